@@ -1,0 +1,6 @@
+#include <cstdio>
+
+int main() {
+  std::puts("tiltmap " TILTMAP_VERSION);
+  return 0;
+}

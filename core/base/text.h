@@ -1,0 +1,31 @@
+// Small text helpers that readers, parameters and the command line share.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tiltmap {
+
+// The whole of `text` as a number, or nothing: no trailing characters, no locale, no hexadecimal.
+// parseReal takes "nan" and "inf" too; whether they make sense is the caller's business.
+std::optional<double> parseReal(std::string_view text);
+std::optional<long long> parseInteger(std::string_view text);
+
+std::string_view trimmed(std::string_view text);
+std::vector<std::string_view> splitWords(std::string_view text);                  // at blanks and tabs
+std::vector<std::string_view> splitAt(std::string_view text, char separator);    // keeps empty parts
+std::string joined(const std::vector<std::string>& parts, std::string_view separator);
+
+// The candidate with the smallest Levenshtein distance to `word`, where that is at most a third of the longer
+// length and at least one; nothing when none is near.
+std::optional<std::string> nearestName(std::string_view word, const std::vector<std::string>& candidates);
+
+// printf-style shortest text of a number that reads back as the same double.
+std::string shortestReal(double value);
+
+// A quoted excerpt of foreign bytes that is safe to print: control characters escaped, cut at `length`.
+std::string printable(std::string_view bytes, std::size_t length = 40);
+
+}  // namespace tiltmap

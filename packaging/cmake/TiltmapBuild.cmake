@@ -1,0 +1,50 @@
+# What every target of the project shares: warnings, sanitizers, coverage, compiler cache, linker.
+include(CheckCXXCompilerFlag)
+
+set(TILTMAP_SANITIZE "" CACHE STRING "Sanitizers, as -fsanitize= takes them: address,undefined or thread")
+option(TILTMAP_WERROR "Treat warnings as errors" OFF)
+option(TILTMAP_COVERAGE "Instrument for gcov" OFF)
+
+find_program(TILTMAP_CCACHE ccache)
+if(TILTMAP_CCACHE)
+  set(CMAKE_C_COMPILER_LAUNCHER ${TILTMAP_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${TILTMAP_CCACHE})
+endif()
+find_program(TILTMAP_MOLD mold)
+if(TILTMAP_MOLD)
+  add_link_options(-fuse-ld=mold)
+endif()
+
+# Carried by every room; foreign headers come in as SYSTEM and stay quiet.
+add_library(tiltmap_build_flags INTERFACE)
+target_compile_options(tiltmap_build_flags INTERFACE -Wall -Wextra -Wconversion -Wshadow
+  # Eigen and the standard library trip this one inside inlined code of theirs.
+  -Wno-maybe-uninitialized)
+if(TILTMAP_WERROR)
+  target_compile_options(tiltmap_build_flags INTERFACE -Werror)
+endif()
+# Multiplying and adding in one rounding would make results differ between machines.
+target_compile_options(tiltmap_build_flags INTERFACE -ffp-contract=off)
+if(TILTMAP_SANITIZE)
+  target_compile_options(tiltmap_build_flags INTERFACE -fsanitize=${TILTMAP_SANITIZE} -fno-omit-frame-pointer
+    -fno-sanitize-recover=all)
+  target_link_options(tiltmap_build_flags INTERFACE -fsanitize=${TILTMAP_SANITIZE})
+endif()
+if(TILTMAP_COVERAGE)
+  target_compile_options(tiltmap_build_flags INTERFACE --coverage -O0)
+  target_link_options(tiltmap_build_flags INTERFACE --coverage)
+endif()
+
+# tiltmap_add_tests(NAME SOURCES... [LINKS lib...]): one GoogleTest program, its tests known to CTest.
+function(tiltmap_add_tests name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINKS" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE tiltmap_build_flags ${ARG_LINKS} GTest::gmock GTest::gtest GTest::gtest_main)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/bin)
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT "TILTMAP_PROGRAM=$<TARGET_FILE:tiltmap>")
+endfunction()
