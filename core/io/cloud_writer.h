@@ -1,0 +1,80 @@
+// Writing points for other programs.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/geometry/pose.h"
+#include "core/scan/point_cloud.h"
+#include "core/scan/range_image.h"
+
+namespace tiltmap {
+
+enum class CloudFormat {
+  Ply,  // binary little-endian
+  Pcd,  // binary
+  Xyz,  // text: x y z [intensity] [r g b], no header; .xyz, .txt, .asc
+  Csv,  // text with a header line naming the columns
+  Ptx,  // text, one block a scan with its matrix and pose
+  Vtk,  // legacy, binary
+  Uos,  // 3DTK .3d (and the .pose beside it), one scan a file
+};
+
+// By extension: ply, pcd, xyz, txt, asc, csv, ptx, vtk, 3d. Anything else is an Error that lists them.
+Result<CloudFormat> cloudFormatOf(const std::filesystem::path& path);
+
+enum class CloudColour {
+  None,
+  Scan,       // a hue for each scan
+  Height,     // z in the world, blue to red over 1 to 99 % of the points
+  Intensity,  // grey over 1 to 99 %
+};
+
+// One scan to be written, in its own frame.
+struct ExportScan {
+  int index = 0;         // written as the field `scan`
+  Pose world_from_scan;  // points leave the program in the world frame unless the format carries a pose
+  PointCloud cloud;      // raw (cloudOf) or reduced
+  // The range matrix. Where it is given, `cloud` is not used and may be left empty: formats with a matrix
+  // (PTX; PCD and .3d of a single scan) get every cell, the others the cells with a point.
+  RangeImagePtr image;
+  ScannerGeometry geometry;
+};
+
+// What to write, scan by scan, so that only one need be in memory. `scan` may be called twice for each number
+// (colouring by height or intensity needs the range of values first) and must give the same both times.
+struct CloudForExport {
+  std::size_t scans = 0;
+  std::function<Result<ExportScan>(std::size_t)> scan;
+  bool intensity = false;  // write the intensity; a scan without it gets 0
+  bool normals = false;    // write normals; a point without one gets 0 0 0
+};
+// From scans in memory; intensity and normals are written when any scan has them.
+CloudForExport cloudForExport(std::vector<ExportScan> scans);
+
+struct WriteOptions {
+  std::optional<CloudFormat> format;  // nothing: by extension
+  CloudColour colour = CloudColour::None;
+  // PLY, PCD, VTK: coordinates as 8-byte floats, for maps in national grid coordinates; 4-byte floats, which
+  // every reader takes, hold 0.1 mm up to 1 km from the origin.
+  bool double_precision = false;
+};
+
+// Writes beside `path` and renames when complete: on an Error (full disk, no permission, cancelled, a scan
+// that cannot be had) the file that was there before is untouched and no other is left.
+//
+// A PCD or .3d of one scan with its matrix is organised (HEIGHT = rows, cells without a point NaN; in a .3d
+// at the origin), in the scan's frame, with the pose as VIEWPOINT (or .pose); so is each scan in a PTX (cells
+// without a point 0 0 0; intensity as it is, 0.5 where there is none). All others hold points in the world
+// frame.
+Status writeCloud(const std::filesystem::path& path, const CloudForExport& cloud,
+                  const WriteOptions& options = {}, const JobControl& control = {});
+
+}  // namespace tiltmap
