@@ -108,6 +108,11 @@ class ParameterTable {
             if (text == std::get<std::string>(v)) s.*member = value;
         });
   }
+  void text(std::string name, std::string Settings::* member, std::string help, std::string source) {
+    add({std::move(name), std::move(help), "", ParameterKind::Text, {}, {}, {}, std::move(source), {}},
+        [member](const Settings& s) { return ParameterValue(s.*member); },
+        [member](Settings& s, const ParameterValue& v) { s.*member = std::get<std::string>(v); });
+  }
   void preset(std::string name, std::string help, Settings settings) {
     presets_.push_back({{std::move(name), std::move(help)}, std::move(settings)});
   }

@@ -1,0 +1,145 @@
+// Changes to a project, as values: made anywhere, applied by the one writer, all steps or none.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/project/project_snapshot.h"
+
+namespace tiltmap {
+
+// Stands for the k-th scan (from 0) that the same edit adds, wherever a ScanId is asked for.
+constexpr ScanId addedScan(std::size_t k) {
+  return -1 - static_cast<ScanId>(k);
+}
+
+struct NewPhotograph {
+  std::string caption;
+  std::string media_type;
+  std::string path;                  // of a file outside the project; else empty
+  std::vector<unsigned char> bytes;  // to be kept in the project; else empty
+};
+
+// Appends a scan. Without an image and without a loader it is the start of a capture: a matrix of
+// geometry.rows x geometry.columns with no line scanned yet (Project::appendLine fills it).
+struct AddScan {
+  Scan scan;
+  std::function<Result<RangeImagePtr>()>
+      load_image;               // used where scan.image is null: one matrix in memory at a time
+  std::map<Stage, Pose> poses;  // world_from_scan of other stages than odometry
+  std::string note;
+  std::vector<NewPhotograph> photographs;
+};
+// Takes the scans, their poses, links and photographs out. The matrices stay in the file until it is
+// compacted.
+struct DeleteScans {
+  std::vector<ScanId> scans;
+};
+struct RenameScan {
+  ScanId scan = 0;
+  std::string name;
+};
+struct SetNote {
+  ScanId scan = 0;
+  std::string note;
+};
+struct ReorderScans {
+  std::vector<ScanId> order;  // every scan once
+};
+struct SetGeometry {  // a new calibration; rows and columns must stay
+  ScanId scan = 0;
+  ScannerGeometry geometry;
+};
+struct AddPhotograph {
+  ScanId scan = 0;
+  NewPhotograph photograph;
+};
+struct RemovePhotograph {
+  std::int64_t photograph = 0;
+};
+struct AddLinks {
+  std::vector<Link> links;  // ids are given by the project
+  // Takes out links between the same two scans (either way round) of the same origin first: registering again
+  // replaces what registering found before, and leaves alone what a person set by hand.
+  bool replace = true;
+};
+struct DeleteLinks {
+  std::vector<LinkId> links;
+};
+struct SetLinkState {
+  LinkId link = 0;
+  LinkState state = LinkState::Active;
+};
+struct SetPoses {
+  Stage stage = Stage::Pairwise;
+  std::vector<std::pair<ScanId, Pose>> poses;  // world_from_scan; scans not named keep theirs
+};
+struct ClearPoses {  // not odometry: every scan has one
+  Stage stage = Stage::Pairwise;
+};
+struct SetSurvey {
+  SurveyInfo survey;
+};
+
+using EditStep =
+    std::variant<AddScan, DeleteScans, RenameScan, SetNote, ReorderScans, SetGeometry, AddPhotograph,
+                 RemovePhotograph, AddLinks, DeleteLinks, SetLinkState, SetPoses, ClearPoses, SetSurvey>;
+
+// One entry of the history: undone and redone as a whole.
+struct ProjectEdit {
+  std::string title;  // for people: "register 13 pairs"
+  std::vector<EditStep> steps;
+  // The snapshot the edit was computed from. The project refuses the edit when the scans concerned (all of
+  // the snapshot's where `concerned` is empty) have since been deleted or have other matrices, geometry,
+  // poses or links among themselves. Names, notes and photographs may have changed. Without it nothing is
+  // compared.
+  SnapshotPtr base;
+  std::vector<ScanId> concerned;
+  std::vector<JobRecord> jobs;  // what computed it
+
+  bool empty() const { return steps.empty() && jobs.empty(); }
+};
+
+// The usual edits, with their titles.
+ProjectEdit importEdit(std::vector<Scan> scans);
+ProjectEdit deleteEdit(const ProjectSnapshot& snapshot, std::vector<ScanId> scans);
+ProjectEdit renameEdit(ScanId scan, std::string name);
+ProjectEdit noteEdit(ScanId scan, std::string note);
+ProjectEdit surveyEdit(SurveyInfo survey);
+ProjectEdit linkStateEdit(LinkId link, LinkState state);
+// Links found and the poses chained from them; the stage `relaxed` computed from older links is cleared.
+ProjectEdit registerEdit(SnapshotPtr base, std::vector<Link> links,
+                         std::vector<std::pair<ScanId, Pose>> pairwise);
+ProjectEdit relaxEdit(SnapshotPtr base, std::vector<std::pair<ScanId, Pose>> relaxed);
+ProjectEdit posesEdit(Stage stage, std::vector<std::pair<ScanId, Pose>> poses);
+// Every stage on its own is moved as a rigid whole so that `scan` comes to stand at world_from_scan. A stage
+// in which the scan has no pose keeps its own. Fails for a scan that is not there.
+Result<ProjectEdit> rebaseEdit(SnapshotPtr base, ScanId scan, const Pose& world_from_scan);
+// Everything of the other project, appended: scans, poses, links, photographs, jobs; survey entries where
+// this one has none. `world_from_other_world` places it. Matrices are read one at a time when the edit is
+// applied.
+ProjectEdit mergeEdit(const ProjectSnapshot& into, const ProjectSnapshot& other,
+                      const Pose& world_from_other_world = Pose());
+
+// What an edit, an undo or a redo changed.
+struct Change {
+  std::int64_t revision = 0;
+  std::string title;
+  std::vector<ScanId> scans_added;
+  std::vector<ScanId> scans_removed;
+  std::vector<ScanId> scans_changed;  // name, note, photographs, geometry, lines or a pose
+  std::vector<LinkId> links_added;
+  std::vector<LinkId> links_removed;
+  std::vector<LinkId> links_changed;
+  std::vector<Stage> stages_changed;  // with a pose added, removed or moved
+  bool order_changed = false;
+  bool survey_changed = false;
+  bool jobs_changed = false;
+};
+Change changeBetween(const ProjectSnapshot& before, const ProjectSnapshot& after);
+
+}  // namespace tiltmap
