@@ -1,0 +1,138 @@
+#include "core/registration/pair_choice.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace tiltmap {
+
+namespace {
+
+constexpr std::uint32_t kNobody = 0xffffffffU;
+constexpr std::size_t kShootingCandidates = 12;
+
+// One element of `from`, in the frame of `to`.
+struct Query {
+  Eigen::Vector3d position;
+  Eigen::Vector3d normal;  // zero where it has none
+  bool has_normal = false;
+};
+
+std::uint32_t nearest(const PreparedScan& to, const Query& query) {
+  return to.tree->nearest(query.position).index;
+}
+
+// Thesis 4.2.4: in the leaf that holds the nearest point, the one whose normal agrees best.
+std::uint32_t bestNormalInLeaf(const PreparedScan& to, const Query& query) {
+  KdTree::Neighbour found;
+  const KdTree::Leaf leaf = to.tree->leafOfNearest(query.position, found);
+  if (!query.has_normal) return found.index;
+  std::uint32_t best = kNobody;
+  double best_cos = -2.0;
+  for (const std::uint32_t candidate : to.tree->order().subspan(leaf.first, leaf.count)) {
+    const Eigen::Vector3d& normal = to.elements.normal[candidate];
+    if (normal.isZero()) continue;
+    const double cos_angle = normal.dot(query.normal);
+    if (cos_angle > best_cos) best_cos = cos_angle, best = candidate;
+  }
+  return best == kNobody ? found.index : best;
+}
+
+// Chen and Medioni 1991, on points: of the nearest few the one closest to the line along the normal.
+std::uint32_t normalShooting(const PreparedScan& to, const Query& query,
+                             std::vector<KdTree::Neighbour>& scratch) {
+  if (!query.has_normal) return nearest(to, query);
+  to.tree->nearestSeveral(query.position, kShootingCandidates, scratch);
+  std::uint32_t best = kNobody;
+  double best_off = std::numeric_limits<double>::infinity();
+  for (const KdTree::Neighbour& candidate : scratch) {
+    const Eigen::Vector3d d = to.elements.position[candidate.index] - query.position;
+    const double along = d.dot(query.normal);
+    const double off = d.squaredNorm() - along * along;
+    if (off < best_off) best_off = off, best = candidate.index;
+  }
+  return best;
+}
+
+// Nearest with a fitting normal in about the same direction from the scanner of `to`; where none fits, the
+// nearest, which the rules then reject by its own reason.
+std::uint32_t projective(const PreparedScan& to, const Query& query, double min_cos) {
+  std::uint32_t best = kNobody, any = kNobody;
+  double best_square = std::numeric_limits<double>::infinity(), any_square = best_square;
+  const Eigen::Vector3d* positions = to.elements.position.data();
+  const Eigen::Vector3d* normals = to.elements.normal.data();
+  to.directions->around(query.position, [&](const std::uint32_t* first, const std::uint32_t* last) {
+    for (; first != last; ++first) {
+      const double square = (positions[*first] - query.position).squaredNorm();
+      if (square < any_square) any_square = square, any = *first;
+      if (square < best_square && normals[*first].dot(query.normal) >= min_cos)
+        best_square = square, best = *first;
+    }
+  });
+  return best == kNobody ? any : best;
+}
+
+}  // namespace
+
+void choosePairs(const PreparedScan& from, const PreparedScan& to, const Pose& to_from_from,
+                 std::span<const std::uint32_t> sample, bool from_is_fixed,
+                 const RegistrationSettings& settings, std::vector<Correspondence>& pairs) {
+  const bool by_direction = settings.pair_choice == PairChoice::Projective;
+  if (!to.elements.empty() && (by_direction ? !to.directions.has_value() : !to.tree.has_value()))
+    throw std::logic_error("choosePairs: the scan was not prepared for this pair choice");
+  const Eigen::Matrix3d rotation = to_from_from.rotation();
+  const Eigen::Vector3d shift = to_from_from.translation();
+  const double min_cos = std::cos(settings.max_angle_rad);
+  std::vector<KdTree::Neighbour> scratch;
+  for (const std::uint32_t index : sample) {
+    Query query{rotation * from.elements.position[index] + shift, rotation * from.elements.normal[index],
+                false};
+    query.has_normal = !from.elements.normal[index].isZero();
+    std::uint32_t partner = kNobody;
+    if (!to.elements.empty()) {
+      switch (settings.pair_choice) {
+        case PairChoice::Nearest:
+          partner = nearest(to, query);
+          break;
+        case PairChoice::BestNormalInLeaf:
+          partner = bestNormalInLeaf(to, query);
+          break;
+        case PairChoice::NormalShooting:
+          partner = normalShooting(to, query, scratch);
+          break;
+        case PairChoice::Projective:
+          partner = projective(to, query, min_cos);
+          break;
+      }
+    }
+    Correspondence pair;
+    pair.from_fixed = from_is_fixed;
+    pair.fixed = from_is_fixed ? index : partner;
+    pair.moving = from_is_fixed ? partner : index;
+    if (partner == kNobody) {
+      (from_is_fixed ? pair.moving : pair.fixed) = 0;
+      pair.reason = RejectReason::NoPartner;
+    } else {
+      const Eigen::Vector3d& normal = to.elements.normal[partner];
+      pair.distance_m = static_cast<float>((to.elements.position[partner] - query.position).norm());
+      pair.has_normals = query.has_normal && !normal.isZero();
+      if (pair.has_normals) pair.cos_angle = static_cast<float>(normal.dot(query.normal));
+    }
+    pairs.push_back(pair);
+  }
+}
+
+RejectionCounts findPairs(const PreparedScan& fixed, const PreparedScan& moving,
+                          const Pose& fixed_from_moving, std::span<const std::uint32_t> fixed_sample,
+                          std::span<const std::uint32_t> moving_sample, bool both_directions,
+                          const RegistrationSettings& settings, RejectionState& state,
+                          std::vector<Correspondence>& pairs) {
+  pairs.clear();
+  pairs.reserve(moving_sample.size() + fixed_sample.size());
+  choosePairs(moving, fixed, fixed_from_moving, moving_sample, false, settings, pairs);
+  if (both_directions)
+    choosePairs(fixed, moving, fixed_from_moving.inverse(), fixed_sample, true, settings, pairs);
+  return applyRejection(settings, state, pairs);
+}
+
+}  // namespace tiltmap

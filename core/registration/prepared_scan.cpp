@@ -1,0 +1,115 @@
+#include "core/registration/prepared_scan.h"
+
+#include <chrono>
+#include <stdexcept>
+
+#include "core/registration/patches.h"
+#include "core/scan/filters.h"
+#include "core/scan/normals.h"
+#include "core/scan/reduction.h"
+
+namespace tiltmap {
+
+namespace {
+
+constexpr double kBucket_rad = 3.0 * kDegree;
+
+MedianFilterSettings filterSettings(const RegistrationSettings& settings) {
+  MedianFilterSettings filter;
+  filter.window = settings.filter;
+  filter.threshold_m = settings.filter_threshold_m;
+  filter.one_sided = settings.filter_one_sided;
+  filter.include_centre = settings.filter_include_centre;
+  filter.no_return_votes = settings.filter_no_return_votes;
+  return filter;
+}
+
+// Normals one a cell, also where the image is an unordered cloud.
+std::vector<Eigen::Vector3d> cellNormals(const RangeImage& image, const std::vector<Eigen::Vector3d>& points,
+                                         const RegistrationSettings& settings) {
+  if (image.isMatrix()) return matrixNormals(image, points);
+  std::vector<Eigen::Vector3d> valid;
+  valid.reserve(image.validCells());
+  for (std::size_t cell = 0; cell < image.cells(); ++cell)
+    if (image.hasPoint(cell)) valid.push_back(points[cell]);
+  const std::vector<Eigen::Vector3d> found =
+      cloudNormals(valid, settings.normal_neighbours, Eigen::Vector3d::Zero());
+  std::vector<Eigen::Vector3d> normals(image.cells(), Eigen::Vector3d::Zero());
+  std::size_t next = 0;
+  for (std::size_t cell = 0; cell < image.cells(); ++cell)
+    if (image.hasPoint(cell)) normals[cell] = found[next++];
+  return normals;
+}
+
+PointCloud fullCloud(const RangeImage& image, const std::vector<Eigen::Vector3d>& points,
+                     const std::vector<Eigen::Vector3d>& normals) {
+  PointCloud cloud;
+  for (std::size_t cell = 0; cell < image.cells(); ++cell) {
+    if (!image.hasPoint(cell)) continue;
+    cloud.points.push_back(points[cell]);
+    cloud.normals.push_back(normals[cell]);
+    cloud.cell.push_back(static_cast<std::uint32_t>(cell));
+  }
+  return cloud;
+}
+
+SurfaceElements pointElements(const RangeImage& image, const std::vector<Eigen::Vector3d>& points,
+                              const RegistrationSettings& settings) {
+  const std::vector<Eigen::Vector3d> normals = cellNormals(image, points, settings);
+  PointCloud cloud;
+  switch (settings.reduction) {
+    case Reduction::Line:
+      cloud = reducedAlongLines(image, points, normals, settings.reduction_distance_m);
+      break;
+    case Reduction::Voxel:
+      cloud = voxelReduced(fullCloud(image, points, normals), settings.reduction_distance_m);
+      break;
+    default:
+      cloud = fullCloud(image, points, normals);
+      break;
+  }
+  SurfaceElements elements;
+  elements.position = std::move(cloud.points);
+  elements.normal = std::move(cloud.normals);
+  elements.cell = std::move(cloud.cell);
+  if (elements.normal.empty()) elements.normal.assign(elements.size(), Eigen::Vector3d::Zero());
+  return elements;
+}
+
+}  // namespace
+
+PreparedScanPtr prepare(const Scan& scan, const RegistrationSettings& settings) {
+  if (const Status status = checkSettings(settings); !status)
+    throw std::invalid_argument(status.error().what);
+  if (!scan.image) throw std::invalid_argument("prepare: the scan has no range image");
+  const auto begin = std::chrono::steady_clock::now();
+  auto prepared = std::make_shared<PreparedScan>();
+  RangeImagePtr image = scan.image;
+  prepared->raw_points = image->validCells();
+  if (settings.filter != MedianWindow::None) {
+    if (image->isMatrix()) {
+      FilteredImage filtered = medianFiltered(image, filterSettings(settings));
+      image = std::move(filtered.image);
+      prepared->filter_changes = filtered.changes.size();
+    } else {
+      prepared->warnings.emplace_back("the scan is no matrix, so the median filter was not applied");
+    }
+  }
+  if (image->validCells() > 0) {
+    const std::vector<Eigen::Vector3d> points = cellPoints(*image, scan.geometry);
+    prepared->elements = settings.reduction == Reduction::Patches
+                             ? planePatches(*image, scan.geometry, points, settings)
+                             : pointElements(*image, points, settings);
+  }
+  if (!prepared->elements.empty()) {
+    if (settings.pair_choice == PairChoice::Projective)
+      prepared->directions.emplace(prepared->elements.position, kBucket_rad);
+    else
+      prepared->tree.emplace(prepared->elements.position);
+  }
+  prepared->milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  return prepared;
+}
+
+}  // namespace tiltmap

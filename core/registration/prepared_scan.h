@@ -1,0 +1,35 @@
+// Everything registration derives from one scan, made once and shared.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/registration/direction_index.h"
+#include "core/registration/registration_settings.h"
+#include "core/registration/surface_elements.h"
+#include "core/scan/kd_tree.h"
+#include "core/scan/range_image.h"
+
+namespace tiltmap {
+
+// Immutable. Holds what the settings' components ask for: the tree for the pair choices that search one, the
+// directions for the projective one. Empty elements are possible (a scan without a point) and mean no
+// information.
+struct PreparedScan {
+  SurfaceElements elements;
+  std::optional<KdTree> tree;                // over element positions; absent where empty or not asked for
+  std::optional<DirectionIndex> directions;  // likewise
+  std::size_t raw_points = 0;                // cells with a point before the filter
+  std::size_t filter_changes = 0;            // cells the filter changed
+  double milliseconds = 0.0;
+  std::vector<std::string> warnings;
+};
+using PreparedScanPtr = std::shared_ptr<const PreparedScan>;
+
+// Filter, normals, reduction or patches, and the search structure, in that order. Throws
+// std::invalid_argument where checkSettings refuses the settings.
+PreparedScanPtr prepare(const Scan& scan, const RegistrationSettings& settings);
+
+}  // namespace tiltmap

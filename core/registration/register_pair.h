@@ -1,0 +1,43 @@
+// One call: two scans and a start in, a pose and how far to trust it out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/base/result.h"
+#include "core/registration/registration.h"
+
+namespace tiltmap {
+
+struct PairResult {
+  // Carries points of the moving scan into the frame of the fixed one. Only to be used where succeeded().
+  Pose fixed_from_moving;
+  int iterations = 0;
+  std::size_t correspondences = 0;  // pairs kept in the last step
+  // Root mean square of the kept pairs' residuals in the last step (with a loss: weighted by it): along the
+  // normal for the plane metrics, between the points for the closed forms.
+  double rms_m = 0.0;
+  double overlap = 0.0;    // 0 to 1, as Registration::overlap
+  double agreement = 0.0;  // 0 to 1, as Registration::agreement
+  StopReason stop_reason = StopReason::TooFewPairs;
+  // Inverse covariance of the pose for Pose::moved (rotation, translation), fixed frame.
+  Matrix6d information = Matrix6d::Zero();
+  Conditioning condition;     // weak directions
+  double milliseconds = 0.0;  // from the raw matrices (or the prepared scans) to the pose
+  std::vector<StepReport> steps;
+  std::vector<std::string> warnings;
+
+  bool succeeded() const { return isSuccess(stop_reason); }
+};
+
+// From the raw matrices. An Error where the settings are refused, a start is not finite, or the job was
+// cancelled; a registration that ran and found nothing usable is a PairResult whose stop_reason says so.
+Result<PairResult> registerPair(const Scan& fixed, const Scan& moving, const Pose& start_fixed_from_moving,
+                                const RegistrationSettings& settings, const JobControl& control = {});
+// From scans prepared with the same settings, which may be shared between pairs and threads.
+Result<PairResult> registerPair(const PreparedScanPtr& fixed, const PreparedScanPtr& moving,
+                                const Pose& start_fixed_from_moving, const RegistrationSettings& settings,
+                                const JobControl& control = {});
+
+}  // namespace tiltmap

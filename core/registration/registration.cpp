@@ -1,0 +1,221 @@
+#include "core/registration/registration.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/registration/pair_choice.h"
+#include "core/registration/sampling.h"
+
+namespace tiltmap {
+
+namespace {
+
+// The data's own scale is taken this often after the annealing, then kept, so that the iteration can settle.
+constexpr int kOwnScaleSteps = 3;
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+double firstLossScale(const RegistrationSettings& settings) {
+  switch (settings.loss) {
+    case Loss::None:
+      return 0.0;
+    case Loss::GemanMcClure:
+      return settings.loss_scale_m;
+    case Loss::Annealed:
+      return settings.loss_start_m;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+std::string stopReasonName(StopReason reason) {
+  switch (reason) {
+    case StopReason::Converged:
+      return "converged";
+    case StopReason::TinyMotion:
+      return "tiny motion";
+    case StopReason::IterationLimit:
+      return "iteration limit";
+    case StopReason::TooFewPairs:
+      return "too few pairs";
+    case StopReason::NoOverlap:
+      return "no overlap";
+    case StopReason::Diverged:
+      return "diverged";
+    case StopReason::Degenerate:
+      return "degenerate";
+    case StopReason::Cancelled:
+      return "cancelled";
+  }
+  throw std::invalid_argument("stopReasonName: no such reason");
+}
+
+std::string stopReasonSentence(StopReason reason) {
+  switch (reason) {
+    case StopReason::Converged:
+      return "The error no longer changes.";
+    case StopReason::TinyMotion:
+      return "The last step hardly moved.";
+    case StopReason::IterationLimit:
+      return "The iteration limit was reached before the pose settled; raise it, or look at the result.";
+    case StopReason::TooFewPairs:
+      return "Too few pairs were found to estimate a motion; give a better start or wider bounds.";
+    case StopReason::NoOverlap:
+      return "Too little of the two scans fits together; give a better start, or leave this pair out.";
+    case StopReason::Diverged:
+      return "The pose ran away from the start further than allowed; give a better start.";
+    case StopReason::Degenerate:
+      return "The surfaces both scans see leave a direction free, as a single plane or a long corridor does; "
+             "that "
+             "direction stays as at the start.";
+    case StopReason::Cancelled:
+      return "It was cancelled.";
+  }
+  throw std::invalid_argument("stopReasonSentence: no such reason");
+}
+
+bool isSuccess(StopReason reason) {
+  return reason == StopReason::Converged || reason == StopReason::TinyMotion ||
+         reason == StopReason::IterationLimit;
+}
+
+Registration::Registration(const Scan& fixed, const Scan& moving, const Pose& start_fixed_from_moving,
+                           const RegistrationSettings& settings)
+    : Registration(prepare(fixed, settings), prepare(moving, settings), start_fixed_from_moving, settings) {}
+
+Registration::Registration(PreparedScanPtr fixed, PreparedScanPtr moving, const Pose& start_fixed_from_moving,
+                           const RegistrationSettings& settings)
+    : fixed_(std::move(fixed)),
+      moving_(std::move(moving)),
+      settings_(settings),
+      start_(start_fixed_from_moving),
+      pose_(start_fixed_from_moving) {
+  if (!fixed_ || !moving_) throw std::invalid_argument("Registration: a scan is missing");
+  if (const Status status = checkSettings(settings); !status)
+    throw std::invalid_argument(status.error().what);
+  if (!start_.isFinite()) throw std::invalid_argument("Registration: the start is not finite");
+  moving_sample_ = sampledElements(moving_->elements, settings_);
+  if (settings_.both_directions) fixed_sample_ = sampledElements(fixed_->elements, settings_);
+  rejection_.distance_bound_m = settings_.max_distance_m;
+  loss_scale_m_ = firstLossScale(settings_);
+  own_scale_steps_left_ = settings_.loss == Loss::Annealed ? kOwnScaleSteps : 0;
+}
+
+StepReport Registration::step(const std::stop_token& stop) {
+  if (done()) throw std::logic_error("Registration::step: the registration has ended");
+  const auto begin = std::chrono::steady_clock::now();
+  StepReport report;
+  const Pose before = pose_;
+  report.iteration = ++iteration_;
+  if (stop.stop_requested()) {
+    stop_ = StopReason::Cancelled;
+  } else {
+    findPairsOfStep(report);
+    stop_ = advance(report);
+  }
+  report.fixed_from_moving = pose_;
+  report.motion = pose_ * before.inverse();
+  report.distance_bound_m = rejection_.distance_bound_m;
+  report.overlap = overlap_;
+  report.agreement = agreement_;
+  report.stop = stop_;
+  report.milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  return report;
+}
+
+void Registration::findPairsOfStep(StepReport& report) {
+  const bool both = settings_.both_directions && loss_scale_m_ <= settings_.both_directions_below_m;
+  report.rejected =
+      findPairs(*fixed_, *moving_, pose_, fixed_sample_, moving_sample_, both, settings_, rejection_, pairs_);
+  report.pairs = kept_ = report.rejected[static_cast<std::size_t>(RejectReason::None)];
+  report.loss_scale_m = loss_scale_m_;
+}
+
+std::optional<StopReason> Registration::advance(StepReport& report) {
+  const Metric metric = metricOf(settings_.motion, settings_.reduction == Reduction::Patches);
+  LinearSystem system;
+  linearise(metric, fixed_->elements, moving_->elements, Pose(), pose_, pairs_, settings_, loss_scale_m_,
+            system, &residuals_);
+  measure(metric, system, report);
+  if (kept_ < static_cast<std::size_t>(settings_.min_pairs)) return StopReason::TooFewPairs;
+
+  const Pose before = pose_;
+  if (metric == Metric::PointToPoint) {
+    const Result<Pose> found =
+        closedFormStep(settings_.motion, fixed_->elements, moving_->elements, pose_, pairs_, loss_scale_m_);
+    if (!found) return StopReason::Degenerate;
+    pose_ = *found;
+  } else {
+    pose_ = pose_.moved(solvedStep(system, condition_));
+  }
+  const PoseDifference from_start = difference(start_, pose_);
+  if (!pose_.isFinite() || from_start.translation_m > settings_.max_correction_m ||
+      from_start.rotation_rad > settings_.max_correction_rad) {
+    if (!pose_.isFinite()) pose_ = before;
+    return StopReason::Diverged;
+  }
+  const bool settling = own_scale_steps_left_ == 0;
+  updateLossScale();
+  return settling ? endOfStep(report, difference(before, pose_)) : limitReached();
+}
+
+// Records what the linearised system says about the step's pose.
+void Registration::measure(Metric metric, const LinearSystem& system, StepReport& report) {
+  const double last = error_m2_;
+  error_m2_ = system.loss_weight > 0.0 ? system.loss_square_m2 / system.loss_weight : 0.0;
+  rms_m_ = std::sqrt(error_m2_);
+  report.error_m2 = error_m2_;
+  report.rms_m = rms_m_;
+  report.change = iteration_ == 1 ? 1.0 : std::abs(error_m2_ - last) / std::max(last, 1e-300);
+  condition_ = conditioningOf(system, settings_.min_eigenvalue);
+  report.condition = condition_;
+  // Unit weights become an information through the residuals' own variance.
+  const double floor = 1e-12;
+  information_ = metric == Metric::PatchToPatch ? system.h : Matrix6d(system.h / std::max(error_m2_, floor));
+  std::size_t common = 0;
+  for (const Correspondence& pair : pairs_)
+    if (!pair.from_fixed && pair.reason != RejectReason::NoPartner) ++common;
+  overlap_ = common > 0 ? static_cast<double>(system.agreeing_moving) / static_cast<double>(common) : 0.0;
+  agreement_ =
+      system.pairs > 0 ? static_cast<double>(system.agreeing) / static_cast<double>(system.pairs) : 0.0;
+}
+
+void Registration::updateLossScale() {
+  if (settings_.loss != Loss::Annealed || own_scale_steps_left_ == 0) return;
+  if (loss_scale_m_ > settings_.loss_end_m) {
+    loss_scale_m_ = std::max(settings_.loss_end_m, loss_scale_m_ * settings_.loss_factor);
+    return;
+  }
+  --own_scale_steps_left_;
+  loss_scale_m_ = std::clamp(median(residuals_), settings_.loss_minimum_m, settings_.loss_end_m);
+}
+
+std::optional<StopReason> Registration::limitReached() const {
+  if (iteration_ >= settings_.max_iterations) return verified(StopReason::IterationLimit);
+  return std::nullopt;
+}
+
+std::optional<StopReason> Registration::endOfStep(const StepReport& report,
+                                                  const PoseDifference& motion) const {
+  if (motion.translation_m < settings_.min_translation_m && motion.rotation_rad < settings_.min_rotation_rad)
+    return verified(StopReason::TinyMotion);
+  if (iteration_ > 1 && report.change < settings_.min_change) return verified(StopReason::Converged);
+  return limitReached();
+}
+
+// An end is only what it claims to be where the scans fit and the surfaces determine the pose.
+StopReason Registration::verified(StopReason reason) const {
+  if (overlap_ < settings_.min_overlap || agreement_ < settings_.min_agreement) return StopReason::NoOverlap;
+  if (condition_.weak > 0) return StopReason::Degenerate;
+  return reason;
+}
+
+}  // namespace tiltmap

@@ -1,0 +1,101 @@
+// What a pairwise registration can be told. Every default stands here as a member initialiser, once.
+#pragma once
+
+#include "core/base/parameter.h"
+#include "core/base/result.h"
+#include "core/geometry/pose.h"
+#include "core/registration/rejection.h"
+#include "core/scan/filters.h"
+
+namespace tiltmap {
+
+// What is registered: points, thinned or not, or plane patches.
+enum class Reduction {
+  None,     // every point
+  Line,     // disjoint neighbours of a line merged (thesis 4.2.2.3); a voxel grid where there is no matrix
+  Voxel,    // the mean of each cube
+  Patches,  // plane patches with their covariance
+};
+enum class Sampling { All, Uniform, Random, NormalSpace };
+enum class PairChoice {
+  BestNormalInLeaf,  // thesis 4.2.4
+  Nearest,           // Besl and McKay 1992
+  NormalShooting,    // Chen and Medioni 1991
+  Projective,  // nearest with a fitting normal among what lies in about the same direction from the scanner
+};
+enum class MotionMethod {
+  Svd,  // point to point, closed forms (thesis 4.2.5)
+  Orthonormal,
+  Quaternion,
+  DualQuaternion,
+  PointToPlane,  // one linearised Gauss-Newton step (Chen and Medioni 1991)
+  PlaneToPlane,  // one Gauss-Newton step on both surfaces' covariances (GICP: Segal, Haehnel, Thrun 2009)
+};
+enum class Loss {
+  None,
+  GemanMcClure,  // with a fixed scale
+  Annealed,      // Geman-McClure from a wide scale down to the data's own
+};
+
+// Plain data, SI units. Describe and set it through registrationParameters().
+struct RegistrationSettings : RejectionSettings {
+  // Filter (core/scan/filters.h).
+  MedianWindow filter = MedianWindow::None;
+  double filter_threshold_m = 2.0;
+  bool filter_one_sided = false;
+  bool filter_include_centre = true;
+  bool filter_no_return_votes = false;
+
+  // Reduction.
+  Reduction reduction = Reduction::Patches;
+  double reduction_distance_m = 0.5;  // line and voxel
+  int normal_neighbours = 12;         // normals of an unordered cloud, for point methods
+  bool patch_blocks = true;   // matrices are cut into blocks of cells; false: into cubes, as clouds are
+  double patch_size_m = 2.0;  // cubes that unordered clouds are cut into before splitting
+  int patch_rows = 12;        // blocks of cells that a matrix is cut into before splitting
+  int patch_columns = 24;
+  int patch_splits = 4;  // at most so many halvings
+  int patch_min_points = 6;
+  double patch_range_noise_m = 0.03;  // planar: residual below 2 * sqrt((noise cos incidence)^2 + floor^2)
+  double patch_floor_m = 0.02;
+
+  // Sampling.
+  Sampling sampling = Sampling::All;
+  int sampling_step = 4;  // one element in so many
+  int seed = 1;
+
+  PairChoice pair_choice = PairChoice::Projective;
+  bool both_directions = true;           // also pair the fixed scan's elements with the moving ones
+  double both_directions_below_m = 0.1;  // only once the loss scale is below; loss none: always
+
+  MotionMethod motion = MotionMethod::PlaneToPlane;
+  double gicp_epsilon = 1e-3;  // variance across a point's surface, relative to along it
+
+  Loss loss = Loss::Annealed;
+  double loss_scale_m = 0.1;      // Geman-McClure: the scale
+  double loss_start_m = 2.0;      // annealed: first scale
+  double loss_factor = 0.6;       // annealed: times this each step
+  double loss_end_m = 0.02;       // annealed: down to here, then to the median residual
+  double loss_minimum_m = 0.002;  // annealed: but never below
+
+  // End of the iteration.
+  int max_iterations = 60;
+  double min_change = 1e-3;  // relative change of the mean squared residual
+  double min_translation_m = 2e-5;
+  double min_rotation_rad = 2e-6;
+  int min_pairs = 12;
+  double min_overlap = 0.1;        // below: the scans do not overlap, whatever the residual
+  double min_agreement = 0.5;      // share of pairs that agree within three deviations; below: no overlap
+  double min_eigenvalue = 3e-4;    // of the normalised information; below: degenerate
+  double max_correction_m = 15.0;  // further from the start: diverged
+  double max_correction_rad = 1.5707963267948966;
+};
+
+// Combinations that make no sense are refused with a message; ranges are the table's business.
+Status checkSettings(const RegistrationSettings& settings);
+
+// Descriptions, and the presets "default" and "thesis".
+const ParameterTable<RegistrationSettings>& registrationParameters();
+RegistrationSettings thesisSettings();
+
+}  // namespace tiltmap
