@@ -10,12 +10,13 @@
 
 namespace tiltmap {
 
-// Parallel arrays; an optional one is empty or has one entry a point. Scan frame unless the name says otherwise.
+// Parallel arrays; an optional one is empty or has one entry a point. Scan frame unless the name says
+// otherwise.
 struct PointCloud {
   std::vector<Eigen::Vector3d> points;   // metres
   std::vector<Eigen::Vector3d> normals;  // unit, towards the scanner; zero where a point has none
   std::vector<float> intensity;
-  std::vector<std::uint32_t> cell;       // row-major cell the point comes from (the first of merged ones)
+  std::vector<std::uint32_t> cell;  // row-major cell the point comes from (the first of merged ones)
 
   std::size_t size() const { return points.size(); }
   bool empty() const { return points.empty(); }

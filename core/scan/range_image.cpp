@@ -17,11 +17,15 @@ Result<RangeImagePtr> RangeImage::make(RangeImageData data) {
   if (data.rows < 1 || data.columns < 1) return refuse("a range image needs at least one row and one column");
   const std::size_t cells = data.cells();
   const auto rows = static_cast<std::size_t>(data.rows);
-  if (data.range_m.size() != cells || data.code.size() != cells) return refuse("ranges or codes do not fill the matrix");
-  if (!data.intensity.empty() && data.intensity.size() != cells) return refuse("intensities do not fill the matrix");
-  if (!data.direction.empty() && data.direction.size() != cells) return refuse("directions do not fill the matrix");
+  if (data.range_m.size() != cells || data.code.size() != cells)
+    return refuse("ranges or codes do not fill the matrix");
+  if (!data.intensity.empty() && data.intensity.size() != cells)
+    return refuse("intensities do not fill the matrix");
+  if (!data.direction.empty() && data.direction.size() != cells)
+    return refuse("directions do not fill the matrix");
   if (data.line_tilt_rad.size() != rows) return refuse("there is not one tilt angle for every line");
-  if (!data.line_time_s.empty() && data.line_time_s.size() != rows) return refuse("there is not one time for every line");
+  if (!data.line_time_s.empty() && data.line_time_s.size() != rows)
+    return refuse("there is not one time for every line");
   for (const double tilt : data.line_tilt_rad)
     if (!std::isfinite(tilt)) return refuse("a tilt angle is not finite");
   for (std::size_t i = 0; i < cells; ++i) {
@@ -42,7 +46,8 @@ int RangeImage::scannedLines() const {
   int lines = 0;
   for (int row = 0; row < rows(); ++row) {
     const auto first = data_.code.begin() + static_cast<std::ptrdiff_t>(index(row, 0));
-    if (std::any_of(first, first + columns(), [](CellCode c) { return c != cell_code::kNotScanned; })) ++lines;
+    if (std::any_of(first, first + columns(), [](CellCode c) { return c != cell_code::kNotScanned; }))
+      ++lines;
   }
   return lines;
 }
@@ -51,7 +56,8 @@ Eigen::Vector3d cellPoint(const RangeImage& image, const ScannerGeometry& geomet
   const std::size_t cell = image.index(row, column);
   if (!image.isRegular())
     return image.directions()[cell].cast<double>() * static_cast<double>(image.range(cell));
-  return geometry.point(image.lineTilt(row), geometry.azimuthOfColumn(column), static_cast<double>(image.range(cell)));
+  return geometry.point(image.lineTilt(row), geometry.azimuthOfColumn(column),
+                        static_cast<double>(image.range(cell)));
 }
 
 std::vector<Eigen::Vector3d> cellPoints(const RangeImage& image, const ScannerGeometry& geometry) {

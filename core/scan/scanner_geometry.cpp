@@ -23,11 +23,14 @@ Eigen::Vector3d ScannerGeometry::point(double tilt_rad, double azimuth_rad, doub
 }
 
 std::optional<MatrixPlace> ScannerGeometry::place(const Eigen::Vector3d& point_m) const {
-  // Undo the tilt, then lever arm and mounting: the beam plane is z = 0 there. Without calibration the tilt is the
-  // polar angle of (y, z); otherwise find the tilt that brings the point into the beam plane, by Newton.
+  // Undo the tilt, then lever arm and mounting: the beam plane is z = 0 there. Without calibration the tilt
+  // is the polar angle of (y, z); otherwise find the tilt that brings the point into the beam plane, by
+  // Newton.
   const double across = std::hypot(point_m.y(), point_m.z());
   const Eigen::Quaterniond unmount = mounting.conjugate();
-  const auto inBeamFrame = [&](double e) { return Eigen::Vector3d(unmount * (tilted(point_m, -e) - lever_arm_m)); };
+  const auto inBeamFrame = [&](double e) {
+    return Eigen::Vector3d(unmount * (tilted(point_m, -e) - lever_arm_m));
+  };
   double e = across > 0.0 ? std::atan2(point_m.z(), point_m.y()) : 0.0;
   if (across > 0.0) {
     bool settled = false;
@@ -53,12 +56,15 @@ std::optional<MatrixPlace> ScannerGeometry::place(const Eigen::Vector3d& point_m
 }
 
 Status ScannerGeometry::check() const {
-  const auto bad = [](const char* what, const char* remedy) { return fail(what, "scanner geometry", remedy); };
+  const auto bad = [](const char* what, const char* remedy) {
+    return fail(what, "scanner geometry", remedy);
+  };
   if (rows < 1 || columns < 1 || static_cast<long long>(rows) * columns > 100'000'000)
     return bad("the matrix has no cells or too many", "give 1 to 100 million cells");
-  if (azimuth_step_rad == 0.0 || tilt_step_rad == 0.0) return bad("an angular step is zero", "give both steps");
-  for (const double value : {azimuth_start_rad, azimuth_step_rad, tilt_start_rad, tilt_step_rad, tilt_zero_rad,
-                             range_offset_m, minimum_range_m, maximum_range_m})
+  if (azimuth_step_rad == 0.0 || tilt_step_rad == 0.0)
+    return bad("an angular step is zero", "give both steps");
+  for (const double value : {azimuth_start_rad, azimuth_step_rad, tilt_start_rad, tilt_step_rad,
+                             tilt_zero_rad, range_offset_m, minimum_range_m, maximum_range_m})
     if (!std::isfinite(value)) return bad("a value is not finite", "give numbers");
   if (!lever_arm_m.allFinite() || !mounting.coeffs().allFinite() || std::abs(mounting.norm() - 1.0) > 1e-6)
     return bad("lever arm or mounting rotation is not usable", "give finite values and a unit quaternion");

@@ -17,11 +17,12 @@ struct MatrixPlace {
   double range_m = 0.0;  // the range the scanner would print (range offset taken out)
 };
 
-// The scan frame: x right, y forward, z up, metres; the origin lies on the tilt axis, which is the x axis. With
-// no lever arm that is the mirror centre (METHOD, frames and units).
+// The scan frame: x right, y forward, z up, metres; the origin lies on the tilt axis, which is the x axis.
+// With no lever arm that is the mirror centre (METHOD, frames and units).
 //
-// Column j looks at azimuth a = azimuth_start + j * azimuth_step (0 = right, pi = left); row i is taken at the tilt e of
-// its line (nominally tilt_start + i * tilt_step, positive looks up). A beam of printed range r ends at
+// Column j looks at azimuth a = azimuth_start + j * azimuth_step (0 = right, pi = left); row i is taken at
+// the tilt e of its line (nominally tilt_start + i * tilt_step, positive looks up). A beam of printed range r
+// ends at
 //
 //   p = Rx(e + tilt_zero) * (lever_arm + mounting * ((r + range_offset) * (cos a, sin a, 0)))
 //
@@ -35,12 +36,12 @@ struct ScannerGeometry {
   double tilt_step_rad = 0.01396263401595463662;     // 0.8 deg
 
   // Calibration.
-  double tilt_zero_rad = 0.0;                                              // added to every tilt angle
-  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();                   // tilt axis to mirror centre, at tilt 0
-  Eigen::Quaterniond mounting = Eigen::Quaterniond::Identity();            // mirror plane in the tilting frame
-  double range_offset_m = 0.0;                                             // added to every printed range
-  double minimum_range_m = 0.0;                                            // nearer is the machine's own body
-  double maximum_range_m = 0.0;                                            // 0: no bound
+  double tilt_zero_rad = 0.0;                                    // added to every tilt angle
+  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();         // tilt axis to mirror centre, at tilt 0
+  Eigen::Quaterniond mounting = Eigen::Quaterniond::Identity();  // mirror plane in the tilting frame
+  double range_offset_m = 0.0;                                   // added to every printed range
+  double minimum_range_m = 0.0;                                  // nearer is the machine's own body
+  double maximum_range_m = 0.0;                                  // 0: no bound
 
   double tiltOfRow(int row) const { return tilt_start_rad + row * tilt_step_rad; }
   double azimuthOfColumn(int column) const { return azimuth_start_rad + column * azimuth_step_rad; }
@@ -49,9 +50,9 @@ struct ScannerGeometry {
   Eigen::Vector3d direction(double tilt_rad, double azimuth_rad) const;
   // Where a beam with this printed range ends.
   Eigen::Vector3d point(double tilt_rad, double azimuth_rad, double range_m) const;
-  // The other way: the place in the matrix (nominal tilts) whose beam goes through the point; nothing for a point that no
-  // beam reaches (at the mirror, or where the search for row and column does not settle). The place may lie
-  // outside the matrix: compare with rows and columns.
+  // The other way: the place in the matrix (nominal tilts) whose beam goes through the point; nothing for a
+  // point that no beam reaches (at the mirror, or where the search for row and column does not settle). The
+  // place may lie outside the matrix: compare with rows and columns.
   std::optional<MatrixPlace> place(const Eigen::Vector3d& point_m) const;
 
   // Sizes positive, steps not zero, everything finite.
