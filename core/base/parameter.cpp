@@ -10,11 +10,16 @@ namespace tiltmap {
 
 std::string parameterKindName(ParameterKind kind) {
   switch (kind) {
-    case ParameterKind::Boolean: return "boolean";
-    case ParameterKind::Integer: return "integer";
-    case ParameterKind::Real: return "real";
-    case ParameterKind::Choice: return "choice";
-    case ParameterKind::Text: return "text";
+    case ParameterKind::Boolean:
+      return "boolean";
+    case ParameterKind::Integer:
+      return "integer";
+    case ParameterKind::Real:
+      return "real";
+    case ParameterKind::Choice:
+      return "choice";
+    case ParameterKind::Text:
+      return "text";
   }
   throw std::logic_error("parameterKindName: no such kind");
 }
@@ -43,6 +48,13 @@ std::string rangeText(const ParameterInfo& info) {
   return noun + unit;
 }
 
+// Degrees that were radians inside may come back a hair beyond the end of their range: the end is meant.
+double withoutRounding(const ParameterInfo& info, double number) {
+  for (const auto& end : {info.minimum, info.maximum})
+    if (end && std::abs(number - *end) <= 1e-12 * std::abs(*end)) return *end;
+  return number;
+}
+
 tl::unexpected<Error> refused(const ParameterInfo& info, const std::string& text) {
   return fail("\"" + text + "\" is not allowed for parameter " + info.name, "--" + info.name,
               "give " + rangeText(info));
@@ -60,14 +72,18 @@ Result<ParameterValue> checkParameter(const ParameterInfo& info, const Parameter
       if (std::holds_alternative<bool>(value)) return value;
       break;
     case ParameterKind::Integer:
-      if (const auto* number = std::get_if<long long>(&value); number && inRange(static_cast<double>(*number)))
+      if (const auto* number = std::get_if<long long>(&value);
+          number && inRange(static_cast<double>(*number)))
         return value;
       break;
-    case ParameterKind::Real:
-      if (const auto* number = std::get_if<double>(&value); number && inRange(*number)) return value;
-      if (const auto* number = std::get_if<long long>(&value); number && inRange(static_cast<double>(*number)))
-        return ParameterValue(static_cast<double>(*number));
+    case ParameterKind::Real: {
+      const auto* whole = std::get_if<long long>(&value);
+      const auto* real = std::get_if<double>(&value);
+      if (!whole && !real) break;
+      const double number = withoutRounding(info, whole ? static_cast<double>(*whole) : *real);
+      if (inRange(number)) return ParameterValue(number);
       break;
+    }
     case ParameterKind::Choice:
       if (const auto* word = std::get_if<std::string>(&value))
         for (const std::string& choice : info.choices)
@@ -93,12 +109,14 @@ Result<ParameterValue> parseParameter(const ParameterInfo& info, const std::stri
       if (const auto number = parseReal(text)) return checkParameter(info, ParameterValue(*number));
       break;
     case ParameterKind::Choice:
-    case ParameterKind::Text: return checkParameter(info, ParameterValue(text));
+    case ParameterKind::Text:
+      return checkParameter(info, ParameterValue(text));
   }
   return refused(info, text);
 }
 
-Error unknownParameter(const std::string& name, const std::vector<std::string>& known, const std::string& operation) {
+Error unknownParameter(const std::string& name, const std::vector<std::string>& known,
+                       const std::string& operation) {
   const auto nearest = nearestName(name, known);
   return {"there is no parameter \"" + name + "\"", "operation " + operation,
           (nearest ? "did you mean " + *nearest + "? " : std::string()) + "`tiltmap parameters " + operation +

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <variant>
@@ -47,7 +49,8 @@ struct ParameterPreset {
   std::string help;
 };
 
-// Ties the descriptions to the members of a plain settings structure. Built once per structure:
+// Ties the descriptions to the members of a plain settings structure. Built once per structure; a name described
+// twice and a default outside its own range throw std::logic_error then.
 //
 //   static const ParameterTable<Settings> table = [] {
 //     ParameterTable<Settings> t("register");
@@ -71,6 +74,8 @@ class ParameterTable {
   }
   void integer(std::string name, int Settings::* member, std::string unit, double minimum, double maximum,
                std::string help, std::string source) {
+    if (minimum < std::numeric_limits<int>::min() || maximum > std::numeric_limits<int>::max())
+      throw std::logic_error("the range of parameter " + name + " does not fit an int");
     add({std::move(name), std::move(help), std::move(unit), ParameterKind::Integer, minimum, maximum, {},
          std::move(source), {}},
         [member](const Settings& s) { return ParameterValue(static_cast<long long>(s.*member)); },
@@ -166,6 +171,9 @@ class ParameterTable {
   void add(ParameterInfo info, std::function<ParameterValue(const Settings&)> get,
            std::function<void(Settings&, const ParameterValue&)> set) {
     info.default_value = get(presets_.front().second);
+    if (find(info.name)) throw std::logic_error("parameter " + info.name + " is described twice");
+    if (!checkParameter(info, info.default_value))
+      throw std::logic_error("the default of parameter " + info.name + " lies outside its own range");
     entries_.push_back({infos_.size(), std::move(get), std::move(set)});
     infos_.push_back(std::move(info));
   }

@@ -11,14 +11,17 @@ namespace {
 
 template <class T>
 std::optional<T> parseWhole(std::string_view text) {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  // from_chars takes no plus sign, and "+-1" is no number either.
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   T value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || text.empty()) return std::nullopt;
   return value;
 }
 
-bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
+bool isBlank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
+}
 
 std::size_t editDistance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -37,8 +40,12 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::optional<double> parseReal(std::string_view text) { return parseWhole<double>(text); }
-std::optional<long long> parseInteger(std::string_view text) { return parseWhole<long long>(text); }
+std::optional<double> parseReal(std::string_view text) {
+  return parseWhole<double>(text);
+}
+std::optional<long long> parseInteger(std::string_view text) {
+  return parseWhole<long long>(text);
+}
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && isBlank(text.front())) text.remove_prefix(1);
@@ -106,7 +113,8 @@ std::string printable(std::string_view bytes, std::size_t length) {
       text += c;
     } else {
       std::array<char, 8> escaped{};
-      std::snprintf(escaped.data(), escaped.size(), "\\x%02x", static_cast<unsigned>(static_cast<unsigned char>(c)));
+      std::snprintf(escaped.data(), escaped.size(), "\\x%02x",
+                    static_cast<unsigned>(static_cast<unsigned char>(c)));
       text += escaped.data();
     }
   }

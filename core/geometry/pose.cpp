@@ -6,10 +6,15 @@
 namespace tiltmap {
 
 Pose::Pose(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation_m)
-    : rotation_(rotation.normalized()), translation_(translation_m) {}
+    : rotation_(rotation.normalized()), translation_(translation_m) {
+  if (rotation.squaredNorm() == 0.0) throw std::invalid_argument("Pose: a zero quaternion is no rotation");
+}
 
 Pose::Pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation_m)
-    : rotation_(Eigen::Quaterniond(rotation).normalized()), translation_(translation_m) {}
+    : rotation_(Eigen::Quaterniond(rotation).normalized()), translation_(translation_m) {
+  if (rotation.determinant() <= 0.0)
+    throw std::invalid_argument("Pose: the matrix is a reflection or singular");
+}
 
 Pose Pose::planar(double x_m, double y_m, double heading_rad) {
   return {Eigen::Quaterniond(Eigen::AngleAxisd(heading_rad, Eigen::Vector3d::UnitZ())), {x_m, y_m, 0.0}};

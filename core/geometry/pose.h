@@ -16,11 +16,13 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 class Pose {
  public:
   Pose() = default;  // the identity
-  // The quaternion is normalised here.
+  // The quaternion is normalised here. Zero, a reflection or a singular matrix throws std::invalid_argument;
+  // what is not finite passes and is told by isFinite().
   Pose(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation_m);
   Pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation_m);
 
-  // A stop on level ground: position in metres, heading in radians, left (counter-clockwise) positive from +y.
+  // A stop on level ground: position in metres, heading in radians, left (counter-clockwise) positive from
+  // +y.
   static Pose planar(double x_m, double y_m, double heading_rad);
   // Shortest rotation that brings +y onto the given heading vector (thesis 5.1), keeping z as upright as it
   // can be. Throws std::invalid_argument for a vertical or zero heading.

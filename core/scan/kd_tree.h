@@ -10,11 +10,11 @@
 
 namespace tiltmap {
 
-// Split at the median, axes in turn (one along which the points spread less than half as far as along another is
-// passed over: a flat floor is not cut by height), leaves of at most leaf_size points. Where figure 4.14 would recurse for
-// ever on equal coordinates, points equal to the median go to either side and a set of identical points still
-// ends in leaves. Refers to no outside memory: points are copied in leaf order. Immutable, so searching from
-// many threads is fine.
+// Split at the median, axes in turn (one along which the points spread less than half as far as along another
+// is passed over: a flat floor is not cut by height), leaves of at most leaf_size points. Where figure 4.14
+// would recurse for ever on equal coordinates, points equal to the median go to either side and a set of
+// identical points still ends in leaves. Refers to no outside memory: points are copied in leaf order.
+// Immutable, so searching from many threads is fine.
 //
 // Searches are exact: they find what comparing with every point would, to the last bit and in the same order.
 // A search for a query that is not finite, and one for the nearest point of an empty tree, throws

@@ -28,6 +28,8 @@ Result<RangeImagePtr> RangeImage::make(RangeImageData data) {
     return refuse("there is not one time for every line");
   for (const double tilt : data.line_tilt_rad)
     if (!std::isfinite(tilt)) return refuse("a tilt angle is not finite");
+  for (const double time : data.line_time_s)
+    if (!std::isfinite(time)) return refuse("the time of a line is not finite");
   for (std::size_t i = 0; i < cells; ++i) {
     if (!cell_code::hasPoint(data.code[i])) {
       data.range_m[i] = 0.0F;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace tiltmap {
 
@@ -9,6 +10,19 @@ namespace {
 Eigen::Vector3d tilted(const Eigen::Vector3d& v, double tilt_rad) {
   const double c = std::cos(tilt_rad), s = std::sin(tilt_rad);
   return {v.x(), c * v.y() - s * v.z(), s * v.y() + c * v.z()};
+}
+
+// Whole turns added until the index is as near to the middle of the matrix as it can be.
+double nearestTurn(double index, double step_rad, int count) {
+  const double turn = 2.0 * std::numbers::pi / std::abs(step_rad);
+  return index - turn * std::round((index - 0.5 * (count - 1)) / turn);
+}
+
+// How far a place lies outside the matrix, radians.
+double outside(const ScannerGeometry& geometry, const MatrixPlace& place) {
+  const auto beyond = [](double index, int count) { return std::max({-index, index - (count - 1), 0.0}); };
+  return beyond(place.row, geometry.rows) * std::abs(geometry.tilt_step_rad) +
+         beyond(place.column, geometry.columns) * std::abs(geometry.azimuth_step_rad);
 }
 }  // namespace
 
@@ -23,36 +37,39 @@ Eigen::Vector3d ScannerGeometry::point(double tilt_rad, double azimuth_rad, doub
 }
 
 std::optional<MatrixPlace> ScannerGeometry::place(const Eigen::Vector3d& point_m) const {
-  // Undo the tilt, then lever arm and mounting: the beam plane is z = 0 there. Without calibration the tilt
-  // is the polar angle of (y, z); otherwise find the tilt that brings the point into the beam plane, by
-  // Newton.
-  const double across = std::hypot(point_m.y(), point_m.z());
-  const Eigen::Quaterniond unmount = mounting.conjugate();
-  const auto inBeamFrame = [&](double e) {
-    return Eigen::Vector3d(unmount * (tilted(point_m, -e) - lever_arm_m));
-  };
-  double e = across > 0.0 ? std::atan2(point_m.z(), point_m.y()) : 0.0;
-  if (across > 0.0) {
-    bool settled = false;
-    for (int step = 0; step < 30 && !settled; ++step) {
-      const double off = inBeamFrame(e).z();
-      const double h = 1e-6;
-      const double slope = (inBeamFrame(e + h).z() - inBeamFrame(e - h).z()) / (2.0 * h);
-      if (std::abs(off) < 1e-12 * (1.0 + across)) {
-        settled = true;
-      } else {
-        if (std::abs(slope) < 1e-9) return std::nullopt;
-        e -= std::clamp(off / slope, -0.5, 0.5);
-      }
-    }
-    if (!settled && std::abs(inBeamFrame(e).z()) > 1e-9 * (1.0 + across)) return std::nullopt;
-  }
-  const Eigen::Vector3d beam = inBeamFrame(e);
-  const double range = std::hypot(beam.x(), beam.y());
-  if (!(range > 0.0)) return std::nullopt;
-  const double azimuth = std::atan2(beam.y(), beam.x());
-  return MatrixPlace{(e - tilt_zero_rad - tilt_start_rad) / tilt_step_rad,
-                     (azimuth - azimuth_start_rad) / azimuth_step_rad, range - range_offset_m};
+  if (!point_m.allFinite()) return std::nullopt;
+  // The tilt e brings the beam plane, normal n in the tilting frame, onto the point: n . (Rx(-e) p -
+  // lever_arm) = 0, which is a cos e + b sin e = d, with none, one or two solutions.
+  const Eigen::Vector3d n = mounting * Eigen::Vector3d::UnitZ();
+  const double a = n.y() * point_m.y() + n.z() * point_m.z();
+  const double b = n.y() * point_m.z() - n.z() * point_m.y();
+  const double d = n.dot(lever_arm_m) - n.x() * point_m.x();
+  const double reach = std::hypot(a, b);
+  const double rounding = 1e-12 * (1.0 + point_m.norm() + lever_arm_m.norm());
+  if (std::abs(d) > reach + rounding) return std::nullopt;
+  if (reach <= rounding)
+    return placeAtTilt(tiltOfRow(0) + 0.5 * (rows - 1) * tilt_step_rad + tilt_zero_rad, point_m);
+
+  const double middle = std::atan2(b, a);
+  const double aside = std::acos(std::clamp(d / reach, -1.0, 1.0));
+  // Of the two the one inside the matrix or nearer to it.
+  const auto first = placeAtTilt(middle + aside, point_m);
+  const auto second = placeAtTilt(middle - aside, point_m);
+  if (!first || !second) return first ? first : second;
+  return outside(*this, *second) < outside(*this, *first) ? second : first;
+}
+
+std::optional<MatrixPlace> ScannerGeometry::placeAtTilt(double tilt_rad,
+                                                        const Eigen::Vector3d& point_m) const {
+  const Eigen::Vector3d beam = mounting.conjugate() * (tilted(point_m, -tilt_rad) - lever_arm_m);
+  const double from_mirror = std::hypot(beam.x(), beam.y());
+  const double range = from_mirror - range_offset_m;
+  if (!(from_mirror > 1e-9) || !(range > 0.0)) return std::nullopt;
+  return MatrixPlace{
+      nearestTurn((tilt_rad - tilt_zero_rad - tilt_start_rad) / tilt_step_rad, tilt_step_rad, rows),
+      nearestTurn((std::atan2(beam.y(), beam.x()) - azimuth_start_rad) / azimuth_step_rad, azimuth_step_rad,
+                  columns),
+      range};
 }
 
 Status ScannerGeometry::check() const {
@@ -66,6 +83,9 @@ Status ScannerGeometry::check() const {
   for (const double value : {azimuth_start_rad, azimuth_step_rad, tilt_start_rad, tilt_step_rad,
                              tilt_zero_rad, range_offset_m, minimum_range_m, maximum_range_m})
     if (!std::isfinite(value)) return bad("a value is not finite", "give numbers");
+  if (minimum_range_m < 0.0 || maximum_range_m < 0.0 ||
+      (maximum_range_m > 0.0 && maximum_range_m <= minimum_range_m))
+    return bad("the bounds of the range leave nothing", "give a maximum above the minimum, or 0 for none");
   if (!lever_arm_m.allFinite() || !mounting.coeffs().allFinite() || std::abs(mounting.norm() - 1.0) > 1e-6)
     return bad("lever arm or mounting rotation is not usable", "give finite values and a unit quaternion");
   return {};

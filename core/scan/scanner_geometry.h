@@ -50,13 +50,18 @@ struct ScannerGeometry {
   Eigen::Vector3d direction(double tilt_rad, double azimuth_rad) const;
   // Where a beam with this printed range ends.
   Eigen::Vector3d point(double tilt_rad, double azimuth_rad, double range_m) const;
-  // The other way: the place in the matrix (nominal tilts) whose beam goes through the point; nothing for a
-  // point that no beam reaches (at the mirror, or where the search for row and column does not settle). The
-  // place may lie outside the matrix: compare with rows and columns.
+  // The other way: the place in the matrix (nominal tilts) whose beam goes through the point. Two beams may:
+  // at the front of one tilt and at the back of another; the place inside the matrix or nearer to it is
+  // given, either one where both are inside. It may lie outside: compare with rows and columns. Every row
+  // sees a point on the tilt axis (without a lever arm); it is given the middle one. Nothing for a point that
+  // no beam reaches: at the mirror, nearer than the range offset, or beside what the beam plane sweeps.
   std::optional<MatrixPlace> place(const Eigen::Vector3d& point_m) const;
 
-  // Sizes positive, steps not zero, everything finite.
+  // Sizes positive, steps not zero, everything finite, range bounds in order.
   Status check() const;
+
+ private:
+  std::optional<MatrixPlace> placeAtTilt(double tilt_rad, const Eigen::Vector3d& point_m) const;
 };
 
 }  // namespace tiltmap
