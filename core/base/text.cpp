@@ -106,6 +106,54 @@ std::string shortestReal(double value) {
   return error == std::errc() ? std::string(buffer.data(), end) : std::string("?");
 }
 
+std::string fixedReal(double value, int places) {
+  std::array<char, 400> buffer{};  // the largest double has 309 digits before the point
+  const auto [end, error] =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed, places);
+  if (error != std::errc()) return "?";
+  std::string text(buffer.data(), end);
+  if (text.front() == '-' && text.find_first_of("123456789in") == std::string::npos) text.erase(0, 1);
+  return text;
+}
+
+std::string groupedInteger(long long value) {
+  std::string digits = std::to_string(value);
+  const std::size_t sign = value < 0 ? 1 : 0;
+  for (std::size_t at = digits.size(); at > 3 + sign; at -= 3) digits.insert(at - 3, ",");
+  return digits;
+}
+
+std::vector<char32_t> codePointsOf(std::string_view utf8) {
+  constexpr std::array<char32_t, 5> kLeast = {0, 0, 0x80, 0x800, 0x10000};  // shorter forms exist below
+  std::vector<char32_t> points;
+  for (std::size_t at = 0; at < utf8.size();) {
+    const auto first = static_cast<unsigned char>(utf8[at]);
+    const std::size_t length = first < 0x80 ? 1 : first < 0xc0 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+    bool good = length > 0 && at + length <= utf8.size();
+    char32_t point = length <= 1 ? first : first & (0x7fU >> length);
+    for (std::size_t k = 1; good && k < length; ++k) {
+      const auto next = static_cast<unsigned char>(utf8[at + k]);
+      good = (next & 0xc0U) == 0x80U;
+      point = (point << 6U) | (next & 0x3fU);
+    }
+    good = good && first < 0xf8 && point >= kLeast[length] && point <= 0x10ffff &&
+           (point < 0xd800 || point > 0xdfff);
+    points.push_back(good ? point : U'\ufffd');
+    at += good ? length : 1;
+  }
+  return points;
+}
+
+std::string utf8Of(char32_t code_point) {
+  const auto tail = [code_point](unsigned shift) {
+    return static_cast<char>(0x80U | ((code_point >> shift) & 0x3fU));
+  };
+  if (code_point < 0x80) return {static_cast<char>(code_point)};
+  if (code_point < 0x800) return {static_cast<char>(0xc0U | (code_point >> 6U)), tail(0)};
+  if (code_point < 0x10000) return {static_cast<char>(0xe0U | (code_point >> 12U)), tail(6), tail(0)};
+  return {static_cast<char>(0xf0U | (code_point >> 18U)), tail(12), tail(6), tail(0)};
+}
+
 std::string printable(std::string_view bytes, std::size_t length) {
   std::string text = "\"";
   for (const char c : bytes.substr(0, length)) {
