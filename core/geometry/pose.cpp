@@ -16,6 +16,12 @@ Pose::Pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation_m
     throw std::invalid_argument("Pose: the matrix is a reflection or singular");
 }
 
+Pose Pose::restored(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation_m) {
+  Pose pose(rotation, translation_m);
+  if (std::abs(rotation.squaredNorm() - 1.0) < 1e-12) pose.rotation_ = rotation;
+  return pose;
+}
+
 Pose Pose::planar(double x_m, double y_m, double heading_rad) {
   return {Eigen::Quaterniond(Eigen::AngleAxisd(heading_rad, Eigen::Vector3d::UnitZ())), {x_m, y_m, 0.0}};
 }

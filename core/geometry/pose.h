@@ -21,6 +21,10 @@ class Pose {
   Pose(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation_m);
   Pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation_m);
 
+  // The same bits that quaternion() and translation() gave when the pose was stored: normalising a unit
+  // quaternion again may move its last bit. One that is not unit within 1e-12 is normalised.
+  static Pose restored(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation_m);
+
   // A stop on level ground: position in metres, heading in radians, left (counter-clockwise) positive from
   // +y.
   static Pose planar(double x_m, double y_m, double heading_rad);

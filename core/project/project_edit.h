@@ -22,6 +22,7 @@ struct NewPhotograph {
   std::string media_type;
   std::string path;                  // of a file outside the project; else empty
   std::vector<unsigned char> bytes;  // to be kept in the project; else empty
+  std::function<Result<std::vector<unsigned char>>()> load_bytes;  // used where both are empty
 };
 
 // Appends a scan. Without an image and without a loader it is the start of a capture: a matrix of
