@@ -52,6 +52,13 @@ void Furnisher::car(const Spot& spot, std::uint64_t looks) {
   cabin.cut({-x + 0.04, 0.0, waist}, {-1.0, 0.0, 0.28});
   shapes_.push_back(cabin);
 
+  if (!van) {
+    const double run = roof - waist, foremost = front - 1.15 * (run + 0.1),
+                 hindmost = back + (saloon ? 1.0 : 0.45) * run;
+    const double half = x - 0.04 - 0.28 * run;
+    shapes_.push_back(Hull::box(frame, {-half, hindmost, roof - 0.02}, {half, foremost, roof + 0.03}, paint));
+  }
+
   const double wheel = 0.31;
   for (const double axle : {y - 0.85, -y + 0.8}) {
     // An eight-sided roller as wide as the car: both wheels of an axle.
@@ -71,6 +78,12 @@ void Furnisher::kerb(const Spot& spot, double length_m) {
       Hull::box(onSlope(spot), {-0.08, -0.5 * length_m, -0.3}, {0.08, 0.5 * length_m, 0.13}, 0.4));
 }
 
+void Furnisher::island(const Spot& spot, double radius_m) {
+  if (far(spot)) return;
+  const double foot = height(spot);
+  shapes_.push_back(Cylinder{spot.place_m, radius_m, foot - 0.6, foot + 0.15, 0.4});
+}
+
 void Furnisher::lampPost(const Spot& spot, double height_m) {
   if (far(spot)) return;
   const double foot = height(spot);
@@ -86,7 +99,7 @@ void Furnisher::tree(const Spot& spot, double size, std::uint64_t looks) {
   RandomStream random(looks);
   const double foot = height(spot), trunk = size * random.uniform(1.7, 2.4);
   const double radius = size * random.uniform(1.4, 1.9), half_height = size * random.uniform(1.6, 2.4);
-  const double density = random.uniform(0.4, 0.65), bark = random.uniform(0.25, 0.4),
+  const double density = random.uniform(0.3, 0.55), bark = random.uniform(0.25, 0.4),
                leaf = random.uniform(0.4, 0.6);
   const double middle = foot + trunk + 0.8 * half_height;
   shapes_.push_back(Cylinder{spot.place_m, size * random.uniform(0.11, 0.2), foot - 0.5, middle, bark});
@@ -125,12 +138,13 @@ void Furnisher::lowWall(const Spot& spot, double length_m, double height_m) {
                               {0.18, 0.5 * length_m + 0.05, height_m + 0.07}, 0.55));
 }
 
-void Furnisher::building(const Spot& spot, double length_m, double depth_m, std::uint64_t looks) {
+void Furnisher::building(const Spot& spot, double length_m, double depth_m, int least_storeys,
+                         std::uint64_t looks) {
   // Beyond the radius only when all of it is.
   if ((spot.place_m - centre_m_).norm() > radius_m_ + 0.5 * std::hypot(length_m, depth_m)) return;
   RandomStream random(looks);
   const double lot = random.uniform();
-  const int storeys = lot < 0.4 ? 1 : (lot < 0.85 ? 2 : 3);
+  const int storeys = std::max(least_storeys, lot < 0.4 ? 1 : (lot < 0.93 ? 2 : 3));
   Facade body;
   body.site_from_frame = upright(spot);
   body.half_m = {0.5 * length_m, 0.5 * depth_m};

@@ -27,14 +27,15 @@ class Furnisher {
 
   void car(const Spot& spot, std::uint64_t looks);   // nose to +y; stands on the slope
   void kerb(const Spot& spot, double length_m);      // along +y, 0.13 m high, follows the slope
+  void island(const Spot& spot, double radius_m);    // a round kerb with earth in it
   void lampPost(const Spot& spot, double height_m);  // the arm points along +y
   void tree(const Spot& spot, double size, std::uint64_t looks);
   void bin(const Spot& spot);
   void sign(const Spot& spot, double facing_rad);
   void container(const Spot& spot);
   void lowWall(const Spot& spot, double length_m, double height_m);  // along +y
-  // One to three storeys, front towards +y; length along x.
-  void building(const Spot& spot, double length_m, double depth_m, std::uint64_t looks);
+  // least_storeys to three storeys, front towards +y; length along x.
+  void building(const Spot& spot, double length_m, double depth_m, int least_storeys, std::uint64_t looks);
 
   std::vector<Shape> take() { return std::move(shapes_); }
 

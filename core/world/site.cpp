@@ -12,6 +12,62 @@ namespace {
 constexpr std::uint32_t kLeafShapes = 3;
 constexpr double kPlainGround = 0.2;
 constexpr double kMargin = 5e-3;  // m
+constexpr float kFar = 1e30F;
+constexpr float kNever = std::numeric_limits<float>::infinity();
+// Where to part the shapes of a node: the surface area heuristic over sixteen slices of the longest axis
+// (Wald 2007), or the median where all centres fall into one slice.
+std::uint32_t split(std::uint32_t first, std::uint32_t last, std::vector<std::uint32_t>& order,
+                    const std::vector<Eigen::AlignedBox3d>& bounds, const Eigen::AlignedBox3d& centres) {
+  constexpr int kSlices = 16;
+  int axis = 0;
+  const double width = centres.sizes().maxCoeff(&axis);
+  const auto slice = [&](std::uint32_t i) {
+    const double place = (bounds[i].center()[axis] - centres.min()[axis]) / width;
+    return std::min(kSlices - 1, static_cast<int>(kSlices * place));
+  };
+  if (width > 0.0) {
+    std::array<Eigen::AlignedBox3d, kSlices> box;
+    std::array<int, kSlices> count{};
+    for (std::uint32_t i = first; i < last; ++i) {
+      const auto s = static_cast<std::size_t>(slice(order[i]));
+      box[s].extend(bounds[order[i]]);
+      ++count[s];
+    }
+    const auto area = [](const Eigen::AlignedBox3d& b) {
+      const Eigen::Vector3d e = b.sizes();
+      return e.x() * e.y() + e.y() * e.z() + e.z() * e.x();
+    };
+    std::array<double, kSlices> right_cost{};
+    Eigen::AlignedBox3d sum;
+    int shapes = 0;
+    for (std::size_t s = kSlices - 1; s > 0; --s) {
+      sum.extend(box[s]);
+      shapes += count[s];
+      right_cost[s] = shapes > 0 ? area(sum) * shapes : 0.0;
+    }
+    sum.setEmpty();
+    shapes = 0;
+    int best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t s = 0; s + 1 < kSlices; ++s) {
+      sum.extend(box[s]);
+      shapes += count[s];
+      const bool parts = shapes > 0 && shapes < static_cast<int>(last - first);
+      if (!parts) continue;
+      const double cost = area(sum) * shapes + right_cost[s + 1];
+      if (cost < least) {
+        least = cost;
+        best = static_cast<int>(s);
+      }
+    }
+    const auto parted = std::stable_partition(order.begin() + first, order.begin() + last,
+                                              [&](std::uint32_t i) { return slice(i) <= best; });
+    const auto middle = static_cast<std::uint32_t>(parted - order.begin());
+    if (middle > first && middle < last) return middle;
+  }
+  return first + (last - first) / 2;
+}
+
 }  // namespace
 
 Site::Site(Ground ground, std::vector<Shape> shapes, GroundReflectivity reflectivity)
@@ -36,21 +92,14 @@ void Site::build(std::uint32_t node, std::uint32_t first, std::uint32_t last,
     centres.extend(bounds[order[i]].center());
   }
   // Single precision is kept on the safe side by a margin above its rounding some kilometres out.
-  nodes_[node].low = (box.min().array() - kMargin).cast<float>();
-  nodes_[node].high = (box.max().array() + kMargin).cast<float>();
+  nodes_[node].low << (box.min().array() - kMargin).cast<float>(), 0.0F;
+  nodes_[node].high << (box.max().array() + kMargin).cast<float>(), kFar;
   if (last - first <= kLeafShapes) {
     nodes_[node].first = first;
     nodes_[node].count = last - first;
     return;
   }
-  int axis = 0;
-  centres.sizes().maxCoeff(&axis);
-  const std::uint32_t middle = first + (last - first) / 2;
-  const auto less = [&](std::uint32_t a, std::uint32_t b) {
-    const double ca = bounds[a].center()[axis], cb = bounds[b].center()[axis];
-    return ca != cb ? ca < cb : a < b;
-  };
-  std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last, less);
+  const std::uint32_t middle = split(first, last, order, bounds, centres);
   const auto left = static_cast<std::uint32_t>(nodes_.size());
   nodes_[node].first = left;
   nodes_.emplace_back();
@@ -68,17 +117,19 @@ std::optional<SurfaceHit> Site::cast(const Ray& ray, double max_distance_m) cons
     on_ground = true;
   }
   if (!nodes_.empty()) {
-    const Eigen::Array3f origin = ray.origin.array().cast<float>();
-    // Never infinite: 0 * infinity is no number, and a box would be missed.
-    const Eigen::Array3f inverse =
-        ray.direction.array()
-            .unaryExpr([](double d) { return 1.0 / (std::abs(d) > 1e-12 ? d : std::copysign(1e-12, d)); })
-            .cast<float>();
+    Eigen::Array4f origin, inverse;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double d = ray.direction[axis];
+      origin[axis] = static_cast<float>(ray.origin[axis]);
+      // Never infinite: 0 * infinity is no number, and a box would be missed.
+      inverse[axis] = static_cast<float>(1.0 / (std::abs(d) > 1e-12 ? d : std::copysign(1e-12, d)));
+    }
+    origin[3] = 0.0F;
+    inverse[3] = 1.0F;
     const auto entry = [&](const Node& node) {
-      const Eigen::Array3f a = (node.low - origin) * inverse, b = (node.high - origin) * inverse;
-      const float in = std::max({std::min(a[0], b[0]), std::min(a[1], b[1]), std::min(a[2], b[2]), 0.0F});
-      const float out = std::min({std::max(a[0], b[0]), std::max(a[1], b[1]), std::max(a[2], b[2])});
-      return in <= out * 1.00001F ? in : std::numeric_limits<float>::infinity();
+      const Eigen::Array4f a = (node.low - origin) * inverse, b = (node.high - origin) * inverse;
+      const float in = a.min(b).maxCoeff(), out = a.max(b).minCoeff();
+      return in <= out * 1.00001F ? in : kNever;
     };
     std::array<std::pair<std::uint32_t, float>, 64> stack;
     std::size_t depth = 0;

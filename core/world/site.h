@@ -29,9 +29,9 @@ class Site {
 
  private:
   struct Node {
-    Eigen::Array3f low, high;
-    std::uint32_t first = 0;  // leaf: first shape; inner: the left child, the right one follows it
-    std::uint32_t count = 0;  // shapes of a leaf; 0 for an inner node
+    Eigen::Array4f low, high;  // the fourth lane is filler, so that one vector instruction serves all axes
+    std::uint32_t first = 0;   // leaf: first shape; inner: the left child, the right one follows it
+    std::uint32_t count = 0;   // shapes of a leaf; 0 for an inner node
   };
   void build(std::uint32_t node, std::uint32_t first, std::uint32_t last, std::vector<std::uint32_t>& order,
              const std::vector<Eigen::AlignedBox3d>& bounds);

@@ -37,6 +37,7 @@ class Block {
     }
     crossVerge(0);
     crossVerge(1);
+    corners();
     courtyard();
   }
 
@@ -102,7 +103,9 @@ class Block {
         // The frame's +y looks back at the street.
         const Spot place =
             spot(across(side, front + 0.5 * depth), middle, turn + inward(side) * 90.0 * kDegree);
-        out_.building(place, length, depth, looks);
+        // At the corners never a low one.
+        const bool corner = v < 16.0 || v + length > StreetGrid::kPitchV - 24.0;
+        out_.building(place, length, depth, corner ? 2 : 1, looks);
       }
       open_before = open;
       v += length + random_.uniform(2.5, 7.0);
@@ -124,8 +127,8 @@ class Block {
     const double from = kKerb + 1.0, to = StreetGrid::kPitchU - kKerb - 1.0;
     for (double u = from; u + 3.0 <= to + 1e-9; u += 3.0)
       out_.kerb(spot(u0_ + u + 1.5, along(kCrossKerb + 0.08), 90.0 * kDegree), 3.0);
-    for (double u = from + random_.uniform(0.5, 4.0); u < to; u += random_.uniform(7.0, 12.0))
-      out_.tree(spot(u0_ + u, along(kCrossKerb + random_.uniform(1.5, 2.5)), 0.0), random_.uniform(0.7, 1.0),
+    for (double u = from + random_.uniform(0.5, 4.0); u < to; u += random_.uniform(5.2, 7.2))
+      out_.tree(spot(u0_ + u, along(kCrossKerb + random_.uniform(1.5, 2.5)), 0.0), random_.uniform(1.0, 1.35),
                 random_.next());
     for (double u = from + random_.uniform(2.0, 8.0); u < to; u += random_.uniform(16.0, 22.0))
       out_.lampPost(spot(u0_ + u, along(kCrossKerb + 0.6), side == 0 ? 180.0 * kDegree : 0.0),
@@ -134,6 +137,20 @@ class Block {
       out_.lowWall(
           spot(u0_ + u + 3.0, along(kCrossKerb + 4.2), 90.0 * kDegree + random_.uniform(-0.05, 0.05)),
           random_.uniform(3.5, 6.0), random_.uniform(0.6, 1.6));
+  }
+
+  // Islands with a large tree where two streets meet: without them a crossing sees little but sky.
+  void corners() {
+    for (const int side : {0, 1})
+      for (const bool far_end : {false, true}) {
+        const double in = random_.uniform(5.1, 5.8), along = random_.uniform(5.6, 6.4),
+                     size = random_.uniform(1.35, 1.5);
+        const std::uint64_t looks = random_.next();
+        const Spot place =
+            spot(across(side, in), far_end ? v0_ + StreetGrid::kPitchV - along : v0_ + along, 0.0);
+        out_.island(place, 1.0);
+        out_.tree(place, size, looks);
+      }
   }
 
   void courtyard() {
