@@ -1,0 +1,164 @@
+#include "tests/benchmarks/program_run.h"
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <fcntl.h>
+#include <fstream>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/benchmarks/stopwatch.h"
+
+namespace tiltmap::benchmarks {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Arguments = std::vector<std::string>;
+
+struct Ended {
+  int exit_code = -1;  // -1: could not be started, or ended by a signal
+  Timing timing;
+  std::string output;  // standard output
+};
+
+double milliseconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_usec) * 1e-3;
+}
+
+Ended run(const fs::path& program, const Arguments& arguments, const fs::path& scratch) {
+  const std::string output = (scratch / "stdout").string();
+  const std::string errors = (scratch / "stderr").string();
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                   0644);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                   0644);
+  std::string name = program.string();
+  Arguments copy = arguments;
+  std::vector<char*> argv{name.data()};
+  for (std::string& argument : copy) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+
+  Ended ended;
+  const auto begin = std::chrono::steady_clock::now();
+  pid_t child = 0;
+  if (posix_spawn(&child, name.c_str(), &actions, nullptr, argv.data(), environ) == 0) {
+    int status = 0;
+    rusage usage{};
+    if (wait4(child, &status, 0, &usage) == child && WIFEXITED(status)) ended.exit_code = WEXITSTATUS(status);
+    ended.timing.cpu_ms = milliseconds(usage.ru_utime) + milliseconds(usage.ru_stime);
+  }
+  ended.timing.wall_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  posix_spawn_file_actions_destroy(&actions);
+  std::ifstream file(output);
+  ended.output.assign(std::istreambuf_iterator<char>(file), {});
+  return ended;
+}
+
+// What `tiltmap evaluate --json --stage` says about the poses of a stage.
+Row stageRow(const std::string& subject, const fs::path& program, const fs::path& project,
+             const std::string& stage, const fs::path& scratch) {
+  Row row{.subject = subject, .program = "poses of stage " + stage};
+  const Ended ended = run(program, {"evaluate", project.string(), "--stage", stage, "--json"}, scratch);
+  const nlohmann::json told = nlohmann::json::parse(ended.output, nullptr, false);
+  if (ended.exit_code != 0 || !told.is_object()) {
+    row.remark = "tiltmap evaluate failed";
+    return row;
+  }
+  double worst_m = 0.0;
+  double worst_deg = 0.0;
+  std::size_t good = 0;
+  for (const nlohmann::json& stop : told.at("stops")) {
+    const double metres = stop.at("translation_error_m").get<double>();
+    worst_m = std::max(worst_m, metres);
+    worst_deg = std::max(worst_deg, stop.at("rotation_error_deg").get<double>());
+    good += metres <= 0.02 ? 1 : 0;
+  }
+  row.worst_mm = worst_m * 1e3;
+  row.worst_deg = worst_deg;
+  row.within = std::to_string(good) + "/" + std::to_string(told.at("stops").size());
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "RMSE %.2f mm, %.4f deg",
+                told.at("rmse_translation_m").get<double>() * 1e3,
+                told.at("rmse_rotation_deg").get<double>());
+  row.remark = text.data();
+  return row;
+}
+
+bool hasCommand(const fs::path& program, const std::string& command, const fs::path& scratch) {
+  return run(program, {command, "--help"}, scratch).exit_code == 0;
+}
+
+// The quietest of several runs, each on a fresh copy of the project; the last copy stays at `work`.
+Ended quietest(const fs::path& program, const Arguments& arguments, const fs::path& original,
+               const fs::path& work, const fs::path& scratch, int rounds) {
+  Ended best;
+  for (int round = 0; round < rounds; ++round) {
+    fs::copy_file(original, work, fs::copy_options::overwrite_existing);
+    const Ended ended = run(program, arguments, scratch);
+    best.timing.keepQuietest(ended.timing);
+    best.exit_code = ended.exit_code;
+    if (ended.exit_code != 0) break;
+  }
+  return best;
+}
+
+Row timeRow(const std::string& subject, const std::string& name, const Ended& ended) {
+  Row row{.subject = subject, .program = name};
+  if (ended.exit_code == 0) {
+    row.wall_ms = ended.timing.wall_ms;
+    row.cpu_ms = ended.timing.cpu_ms;
+    row.remark = "whole process, all cores";
+  } else {
+    row.remark = "ended with exit code " + std::to_string(ended.exit_code);
+  }
+  return row;
+}
+
+}  // namespace
+
+void addProgramRows(Table& table, const fs::path& program, const fs::path& scratch, int rounds,
+                    const std::function<void(const std::string&)>& tell) {
+  const std::string subject = "tiltmap as a process: a project of exp2fixed, 14 stops, seed 1";
+  fs::remove_all(scratch);
+  fs::create_directories(scratch);
+  for (const char* command : {"new", "simulate", "register"}) {
+    if (hasCommand(program, command, scratch)) continue;
+    table.notes.push_back("Skipped: " + program.string() + " has no command " + command + " yet.");
+    return;
+  }
+  tell("tiltmap simulate and register");
+  const fs::path original = scratch / "original.tiltmap";
+  const fs::path work = scratch / "work.tiltmap";
+  const Ended made = run(program, {"new", original.string()}, scratch);
+  const Ended simulated =
+      run(program, {"simulate", original.string(), "--experiment", "exp2fixed", "--quiet"}, scratch);
+  table.rows.push_back(timeRow(subject, "tiltmap simulate", simulated));
+  if (made.exit_code != 0 || simulated.exit_code != 0) return;
+  table.rows.push_back(stageRow(subject, program, original, "odometry", scratch));
+  const auto addStage = [&](const std::string& command, const fs::path& from, const std::string& stage) {
+    const Ended ended = quietest(program, {command, work.string(), "--quiet"}, from, work, scratch, rounds);
+    table.rows.push_back(timeRow(subject, "tiltmap " + command, ended));
+    if (ended.exit_code == 0) table.rows.push_back(stageRow(subject, program, work, stage, scratch));
+    return ended.exit_code == 0;
+  };
+  if (!addStage("register", original, "pairwise")) return;
+  if (!hasCommand(program, "relax", scratch)) {
+    table.notes.push_back("Skipped: tiltmap has no command relax yet.");
+    return;
+  }
+  const fs::path registered = scratch / "registered.tiltmap";
+  fs::copy_file(work, registered, fs::copy_options::overwrite_existing);
+  addStage("relax", registered, "relaxed");
+}
+
+}  // namespace tiltmap::benchmarks
