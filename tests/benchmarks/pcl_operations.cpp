@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include <pcl/console/print.h>
 #include <pcl/features/integral_image_normal.h>
 #include <pcl/features/normal_3d.h>
 #include <pcl/filters/approximate_voxel_grid.h>
@@ -165,6 +166,8 @@ void addTree(const OperationInput& input, std::vector<Operation>& list) {
 }  // namespace
 
 std::vector<Operation> pclOperations(const OperationInput& input) {
+  // It would say at each call that our scans are not from a depth camera.
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   std::vector<Operation> list;
   addMedian(input, list);
   addNormals(input, list);

@@ -57,10 +57,10 @@ void Table::setRatios(const std::string& subject, const std::string& ours) {
   const auto own = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
     return row.subject == subject && row.program == ours;
   });
-  if (own == rows.end() || !own->wall_ms || *own->wall_ms <= 0.0) return;
-  const double own_ms = *own->wall_ms;
+  if (own == rows.end() || !own->cpu_ms || *own->cpu_ms <= 0.0) return;
+  const double own_ms = *own->cpu_ms;
   for (Row& row : rows)
-    if (row.subject == subject && row.wall_ms) row.times_ours = *row.wall_ms / own_ms;
+    if (row.subject == subject && row.cpu_ms) row.times_ours = *row.cpu_ms / own_ms;
 }
 
 void Table::print(std::ostream& out) const {

@@ -15,8 +15,8 @@ struct Row {
   std::string subject;  // what was done, to which data; rows of one subject stand together
   std::string program;  // who did it
   std::optional<double> wall_ms{};
-  std::optional<double> cpu_ms{}; // of all threads together
-  std::optional<double> times_ours{};  // its wall time over that of our row of the subject; above 1: slower
+  std::optional<double> cpu_ms{};      // of all threads together
+  std::optional<double> times_ours{};  // its CPU time over that of our row of the subject; above 1: slower
   std::optional<double> median_mm{}, median_deg{}, worst_mm{}, worst_deg{};
   std::string within{};  // "12/13"
   std::string remark{};
@@ -27,7 +27,8 @@ struct Table {
   std::vector<Row> rows;
   std::vector<std::string> notes;  // what was skipped, and why
 
-  // Sets times_ours of all rows of a subject from the row whose program is `ours`.
+  // Sets times_ours of all rows of a subject from the row whose program is `ours`. By CPU time: with one
+  // thread it is the wall time of a quiet machine, and what else runs there disturbs it least.
   void setRatios(const std::string& subject, const std::string& ours);
   void print(std::ostream& out) const;
   nlohmann::json json() const;
