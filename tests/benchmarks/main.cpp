@@ -118,12 +118,11 @@ int measure(const Options& options, std::pair<int, int> seeds) {
   const std::set<std::string> blocks(options.blocks.begin(), options.blocks.end());
   Table table;
   table.heading = machineLines(options.commit);
+  table.heading.push_back("times     one thread; the quietest of " + std::to_string(options.rounds) +
+                          " rounds taken in turns; of pairs the median over the pairs");
   table.heading.push_back(
-      "times     one thread, quietest of " + std::to_string(options.rounds) +
-      " rounds taken in turns; pairs: the median over the pairs; ours from the raw matrices,");
-  table.heading.push_back(
-      "          the peers' from a cloud of points, both with all preparation; x ours: how many "
-      "times our time");
+      "          ours from the raw matrices, the peers' from a cloud of points, all preparation included");
+  table.heading.push_back("          x ours: CPU time over that of our first row");
   table.heading.push_back(
       "peers     0.5 m voxels, pairs up to 3 m, at most 60 iterations, 20 neighbours for normals");
   bool kept = true;

@@ -142,8 +142,11 @@ void addProgramRows(Table& table, const fs::path& program, const fs::path& scrat
   const Ended made = run(program, {"new", original.string()}, scratch);
   const Ended simulated =
       run(program, {"simulate", original.string(), "--experiment", "exp2fixed", "--quiet"}, scratch);
+  if (made.exit_code != 0 || simulated.exit_code != 0 || !fs::exists(original)) {
+    table.notes.push_back("Skipped: " + program.string() + " made no simulated project.");
+    return;
+  }
   table.rows.push_back(timeRow(subject, "tiltmap simulate", simulated));
-  if (made.exit_code != 0 || simulated.exit_code != 0) return;
   table.rows.push_back(stageRow(subject, program, original, "odometry", scratch));
   const auto addStage = [&](const std::string& command, const fs::path& from, const std::string& stage) {
     const Ended ended = quietest(program, {command, work.string(), "--quiet"}, from, work, scratch, rounds);
