@@ -145,7 +145,40 @@ fs::path resolvedPath(const fs::path& path) {
   return error ? path : resolved;
 }
 
+namespace {
+
+std::uintmax_t logBytes(const fs::path& path) {
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(sibling(path, "-wal"), error);
+  return error ? 0 : bytes;
+}
+
+struct Header {
+  std::array<unsigned char, 100> bytes{};
+  std::int64_t number(std::size_t at, std::size_t size) const {  // big-endian
+    std::int64_t value = 0;
+    for (std::size_t i = at; i < at + size; ++i) value = value << 8 | bytes[i];
+    return value;
+  }
+};
+
+// SQLite itself does not miss a part of the last page until it reads it.
+void requireAllPages(const Header& header, const fs::path& path, std::int64_t size,
+                     std::uintmax_t log_before) {
+  const std::int64_t page = header.number(16, 2) == 1 ? 65536 : header.number(16, 2);
+  const std::int64_t whole = page * header.number(28, 4);
+  // With a log beside it, the file may be anything between two states, and the log completes it.
+  if (size >= whole || log_before > 0 || logBytes(path) > 0) return;
+  throw StoreFailure("the project file is damaged: " + std::to_string(whole - size) + " of its " +
+                         std::to_string(whole) + " bytes are missing at the end",
+                     path.string(),
+                     "go back to a copy of it; keep this file, most of it can still be recovered");
+}
+
+}  // namespace
+
 void requireProjectFile(const fs::path& path) {
+  const std::uintmax_t log_before = logBytes(path);
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0)
     throw StoreFailure(
@@ -164,31 +197,25 @@ void requireProjectFile(const fs::path& path) {
   if (descriptor.value() < 0)
     throw StoreFailure("the file cannot be read (" + systemText(errno) + ")", path.string(),
                        "check your permissions for the file");
-  std::array<unsigned char, 100> header{};
-  const ssize_t size = ::pread(descriptor.value(), header.data(), header.size(), 0);
+  Header header;
+  const ssize_t size = ::pread(descriptor.value(), header.bytes.data(), header.bytes.size(), 0);
   static constexpr char kMagic[16] = "SQLite format 3";
-  if (size < 16 || std::memcmp(header.data(), kMagic, 16) != 0)
+  if (size < 16 || std::memcmp(header.bytes.data(), kMagic, 16) != 0)
     throw StoreFailure("the file is not a Tiltmap project", path.string(), kGivePath);
   if (size < 100)
     throw StoreFailure("the file ends after " + std::to_string(size) + " bytes, within its header",
                        path.string(), "go back to a copy of the project");
-  const auto bigEndian = [&](std::size_t at) {
-    return static_cast<int>(
-        static_cast<unsigned>(header[at]) << 24 | static_cast<unsigned>(header[at + 1]) << 16 |
-        static_cast<unsigned>(header[at + 2]) << 8 | static_cast<unsigned>(header[at + 3]));
-  };
-  if (bigEndian(68) != kApplicationId)
+  if (header.number(68, 4) != kApplicationId)
     throw StoreFailure("the file is an SQLite database of another program, not a Tiltmap project",
                        path.string(), kGivePath);
+  requireAllPages(header, path, status.st_size, log_before);
 }
 
 ReadingConnection::ReadingConnection(const fs::path& path) : mark_(std::make_unique<OpenFileMark>(path)) {
   const bool writable = ::access(path.c_str(), W_OK) == 0 && ::access(folderOf(path).c_str(), W_OK) == 0;
-  std::error_code error;
-  const auto log_bytes = fs::file_size(sibling(path, "-wal"), error);
   if (writable) {
     database_ = std::make_unique<Database>(path, Database::Mode::Read);
-  } else if (error || log_bytes == 0) {
+  } else if (logBytes(path) == 0) {
     immutable_ = true;
     database_ = std::make_unique<Database>(path, Database::Mode::Immutable);
     stamp_ = stamp();

@@ -1,5 +1,6 @@
 #include "core/project/snapshot_reader.h"
 
+#include <cmath>
 #include <cstring>
 #include <optional>
 
@@ -11,15 +12,18 @@ namespace tiltmap {
 
 namespace {
 
-Pose poseFrom(const Statement& row, int first) {
-  return Pose::restored(
-      Eigen::Quaterniond(row.real(first + 6), row.real(first + 3), row.real(first + 4), row.real(first + 5)),
-      Eigen::Vector3d(row.real(first), row.real(first + 1), row.real(first + 2)));
-}
-
 StoreFailure damaged(const Database& database, const std::string& how) {
   return StoreFailure("the project is damaged: " + how, database.path().string(),
                       "go back to a copy of the project");
+}
+
+Pose poseFrom(const Database& database, const Statement& row, int first) {
+  double norm = 0.0;
+  for (int i = 3; i < 7; ++i) norm += row.real(first + i) * row.real(first + i);
+  if (!(std::abs(norm - 1.0) < 1e-6)) throw damaged(database, "a pose's quaternion is not a rotation");
+  return Pose::restored(
+      Eigen::Quaterniond(row.real(first + 6), row.real(first + 3), row.real(first + 4), row.real(first + 5)),
+      Eigen::Vector3d(row.real(first), row.real(first + 1), row.real(first + 2)));
 }
 
 std::unordered_map<std::int64_t, ScannerGeometry> readGeometries(const Database& database) {
@@ -67,7 +71,7 @@ std::vector<Link> readLinks(const Database& database) {
     link.id = query.integer(0);
     link.fixed = query.integer(1);
     link.moving = query.integer(2);
-    link.fixed_from_moving = poseFrom(query, 3);
+    link.fixed_from_moving = poseFrom(database, query, 3);
     link.iterations = query.number(10);
     link.correspondences = query.number(11);
     link.rms_m = query.real(12);
@@ -206,7 +210,7 @@ SnapshotPtr SnapshotReader::read(const Database& database, std::shared_ptr<Image
   };
   Statement poses = database.prepare("SELECT scan_id, stage, x_m, y_m, z_m, qx, qy, qz, qw FROM pose");
   while (poses.step())
-    scanOf(poses.integer(0)).poses[orThrow(parseStage(poses.text(1)))] = poseFrom(poses, 2);
+    scanOf(poses.integer(0)).poses[orThrow(parseStage(poses.text(1)))] = poseFrom(database, poses, 2);
   for (const ScanEntry& scan : snapshot->scans_)
     if (!scan.poses.contains(Stage::Odometry))
       throw damaged(database, "scan " + scan.name + " has no odometry");
