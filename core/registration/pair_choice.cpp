@@ -56,12 +56,13 @@ std::uint32_t normalShooting(const PreparedScan& to, const Query& query,
 
 // Nearest with a fitting normal in about the same direction from the scanner of `to`; where none fits, the
 // nearest, which the rules then reject by its own reason.
-std::uint32_t projective(const PreparedScan& to, const Query& query, double min_cos) {
+std::uint32_t projective(const PreparedScan& to, const DirectionIndex& directions, const Query& query,
+                         double min_cos) {
   std::uint32_t best = kNobody, any = kNobody;
   double best_square = std::numeric_limits<double>::infinity(), any_square = best_square;
   const Eigen::Vector3d* positions = to.elements.position.data();
   const Eigen::Vector3d* normals = to.elements.normal.data();
-  to.directions->around(query.position, [&](const std::uint32_t* first, const std::uint32_t* last) {
+  directions.around(query.position, [&](const std::uint32_t* first, const std::uint32_t* last) {
     for (; first != last; ++first) {
       const double square = (positions[*first] - query.position).squaredNorm();
       if (square < any_square) any_square = square, any = *first;
@@ -75,11 +76,13 @@ std::uint32_t projective(const PreparedScan& to, const Query& query, double min_
 }  // namespace
 
 void choosePairs(const PreparedScan& from, const PreparedScan& to, const Pose& to_from_from,
-                 std::span<const std::uint32_t> sample, bool from_is_fixed,
+                 std::span<const std::uint32_t> sample, bool from_is_fixed, double loss_scale_m,
                  const RegistrationSettings& settings, std::vector<Correspondence>& pairs) {
   const bool by_direction = settings.pair_choice == PairChoice::Projective;
   if (!to.elements.empty() && (by_direction ? !to.directions.has_value() : !to.tree.has_value()))
     throw std::logic_error("choosePairs: the scan was not prepared for this pair choice");
+  const bool wide = loss_scale_m > settings.wide_search_above_m;
+  const auto& directions = wide ? to.wide_directions : to.directions;
   const Eigen::Matrix3d rotation = to_from_from.rotation();
   const Eigen::Vector3d shift = to_from_from.translation();
   const double min_cos = std::cos(settings.max_angle_rad);
@@ -101,7 +104,7 @@ void choosePairs(const PreparedScan& from, const PreparedScan& to, const Pose& t
           partner = normalShooting(to, query, scratch);
           break;
         case PairChoice::Projective:
-          partner = projective(to, query, min_cos);
+          partner = projective(to, *directions, query, min_cos);
           break;
       }
     }
@@ -124,14 +127,15 @@ void choosePairs(const PreparedScan& from, const PreparedScan& to, const Pose& t
 
 RejectionCounts findPairs(const PreparedScan& fixed, const PreparedScan& moving,
                           const Pose& fixed_from_moving, std::span<const std::uint32_t> fixed_sample,
-                          std::span<const std::uint32_t> moving_sample, bool both_directions,
+                          std::span<const std::uint32_t> moving_sample, double loss_scale_m,
                           const RegistrationSettings& settings, RejectionState& state,
                           std::vector<Correspondence>& pairs) {
   pairs.clear();
   pairs.reserve(moving_sample.size() + fixed_sample.size());
-  choosePairs(moving, fixed, fixed_from_moving, moving_sample, false, settings, pairs);
-  if (both_directions)
-    choosePairs(fixed, moving, fixed_from_moving.inverse(), fixed_sample, true, settings, pairs);
+  choosePairs(moving, fixed, fixed_from_moving, moving_sample, false, loss_scale_m, settings, pairs);
+  if (settings.both_directions && loss_scale_m <= settings.both_directions_below_m)
+    choosePairs(fixed, moving, fixed_from_moving.inverse(), fixed_sample, true, loss_scale_m, settings,
+                pairs);
   return applyRejection(settings, state, pairs);
 }
 

@@ -44,11 +44,14 @@ class Splitter {
     solver_.computeDirect(m.covariance);
     const Eigen::Vector3d values = solver_.eigenvalues();
     const Eigen::Matrix3d axes = solver_.eigenvectors();
-    if (isPlanar(m, values, axes.col(0))) {
+    const bool last = splits_left == 0 || points.size() < 2 * minimum_;
+    const double noise = last ? settings_.patch_rough_noise_m : settings_.patch_noise_m;
+    const double floor = last ? settings_.patch_rough_floor_m : settings_.patch_floor_m;
+    if (isPlanar(m, values, axes.col(0), noise, floor)) {
       append(m, values, axes, points.size());
       return;
     }
-    if (splits_left == 0) return;
+    if (last) return;
     const Eigen::Vector3d longest = axes.col(2);
     const double middle = longest.dot(m.mean);
     const auto second = std::partition(points.begin(), points.end(),
@@ -59,11 +62,12 @@ class Splitter {
   }
 
  private:
-  bool isPlanar(const Moments& m, const Eigen::Vector3d& values, const Eigen::Vector3d& normal) const {
+  bool isPlanar(const Moments& m, const Eigen::Vector3d& values, const Eigen::Vector3d& normal,
+                double range_noise, double floor) const {
     const double range = m.mean.norm();
     const double cos_incidence = range > 0.0 ? std::abs(normal.dot(m.mean)) / range : 1.0;
-    const double noise = settings_.patch_range_noise_m * cos_incidence;
-    return values[0] < 4.0 * (noise * noise + settings_.patch_floor_m * settings_.patch_floor_m);
+    const double noise = range_noise * cos_incidence;
+    return values[0] < 4.0 * (noise * noise + floor * floor);
   }
 
   void append(const Moments& m, const Eigen::Vector3d& values, const Eigen::Matrix3d& axes,
@@ -97,43 +101,50 @@ class Splitter {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver_;
 };
 
-// On any plane 1/r is linear in the grid (up to the step's cosine), at any incidence; edges, mixed pixels and
-// leaves are not, and go. The bound is on the resulting depth.
-class EdgeTest {
+// Which cells take part: those with a point and, where asked, not on an edge. On any plane 1/r is linear in
+// the grid (up to the step's cosine), at any incidence; at edges, mixed pixels and leaves it is not. The
+// bound is on the depth.
+class CellChoice {
  public:
-  EdgeTest(const RangeImage& image, const ScannerGeometry& geometry)
-      : image_(image), two_cos_azimuth_(2.0 * std::cos(geometry.azimuth_step_rad)) {
+  CellChoice(const RangeImage& image, const ScannerGeometry& geometry, bool drop_edges)
+      : image_(image),
+        drop_edges_(drop_edges && image.isMatrix() && image.isRegular()),
+        two_cos_azimuth_(2.0 * std::cos(geometry.azimuth_step_rad)) {
     const int rows = image.rows();
     const double tilt_step = rows > 1 ? (image.lineTilt(rows - 1) - image.lineTilt(0)) / (rows - 1) : 0.0;
     two_cos_tilt_ = 2.0 * std::cos(tilt_step);
   }
-  bool smooth(int row, int column) const {
-    const double r = image_.range(row, column);
-    const bool across = column > 0 && column + 1 < image_.columns() && image_.hasPoint(row, column - 1) &&
-                        image_.hasPoint(row, column + 1);
-    const bool along = row > 0 && row + 1 < image_.rows() && image_.hasPoint(row - 1, column) &&
-                       image_.hasPoint(row + 1, column);
-    if (!across || !along) return false;
-    return bend(r, image_.range(row, column - 1), image_.range(row, column + 1), two_cos_azimuth_) < kBend &&
-           bend(r, image_.range(row - 1, column), image_.range(row + 1, column), two_cos_tilt_) < kBend;
+  bool operator()(int row, int column) const {
+    return image_.hasPoint(row, column) && (!drop_edges_ || isSmooth(row, column));
   }
 
  private:
-  static double bend(double r, double before, double after, double two_cos) {
-    return std::abs((1.0 / before + 1.0 / after - two_cos / r) * r * r);
+  bool isSmooth(int row, int column) const {
+    if (row == 0 || row + 1 == image_.rows() || column == 0 || column + 1 == image_.columns()) return false;
+    return isStraight(row, column, 0, 1, two_cos_azimuth_) && isStraight(row, column, 1, 0, two_cos_tilt_);
   }
+  bool isStraight(int row, int column, int down, int across, double two_cos) const {
+    if (!image_.hasPoint(row - down, column - across) || !image_.hasPoint(row + down, column + across))
+      return false;
+    const auto at = [&](int sign) {
+      return static_cast<double>(image_.range(row + sign * down, column + sign * across));
+    };
+    const double r = at(0);
+    return std::abs((1.0 / at(-1) + 1.0 / at(1) - two_cos / r) * r * r) < kBend;
+  }
+
   static constexpr double kBend = 0.2;  // m
   const RangeImage& image_;
-  double two_cos_azimuth_, two_cos_tilt_;
+  bool drop_edges_;
+  double two_cos_azimuth_, two_cos_tilt_ = 2.0;
 };
 
-SurfaceElements matrixPatches(const RangeImage& image, const ScannerGeometry& geometry,
-                              const std::vector<Eigen::Vector3d>& points,
-                              const RegistrationSettings& settings) {
+SurfaceElements blockPatches(const RangeImage& image, const ScannerGeometry& geometry,
+                             const std::vector<Eigen::Vector3d>& points,
+                             const RegistrationSettings& settings) {
   SurfaceElements out;
   Splitter splitter(settings, out);
-  const EdgeTest edge(image, geometry);
-  const bool test_edges = image.isRegular();
+  const CellChoice usable(image, geometry, settings.patch_drop_edges);
   std::vector<Eigen::Vector3d> group;
   group.reserve(static_cast<std::size_t>(settings.patch_rows) *
                 static_cast<std::size_t>(settings.patch_columns));
@@ -144,8 +155,7 @@ SurfaceElements matrixPatches(const RangeImage& image, const ScannerGeometry& ge
       group.clear();
       for (int row = top; row < bottom; ++row)
         for (int column = left; column < right; ++column)
-          if (image.hasPoint(row, column) && (!test_edges || edge.smooth(row, column)))
-            group.push_back(points[image.index(row, column)]);
+          if (usable(row, column)) group.push_back(points[image.index(row, column)]);
       splitter.split(group, settings.patch_splits);
     }
   }
@@ -199,12 +209,15 @@ std::vector<std::size_t> groupByCube(const std::vector<Eigen::Vector3d>& points,
   return start;
 }
 
-SurfaceElements cloudPatches(const RangeImage& image, const std::vector<Eigen::Vector3d>& points,
-                             const RegistrationSettings& settings) {
+SurfaceElements cubePatches(const RangeImage& image, const ScannerGeometry& geometry,
+                            const std::vector<Eigen::Vector3d>& points,
+                            const RegistrationSettings& settings) {
   std::vector<Eigen::Vector3d> valid, grouped;
   valid.reserve(image.validCells());
-  for (std::size_t cell = 0; cell < image.cells(); ++cell)
-    if (image.hasPoint(cell)) valid.push_back(points[cell]);
+  const CellChoice usable(image, geometry, settings.patch_drop_edges);
+  for (int row = 0; row < image.rows(); ++row)
+    for (int column = 0; column < image.columns(); ++column)
+      if (usable(row, column)) valid.push_back(points[image.index(row, column)]);
   const std::vector<std::size_t> start = groupByCube(valid, settings.patch_size_m, grouped);
   SurfaceElements out;
   Splitter splitter(settings, out);
@@ -218,8 +231,9 @@ SurfaceElements cloudPatches(const RangeImage& image, const std::vector<Eigen::V
 SurfaceElements planePatches(const RangeImage& image, const ScannerGeometry& geometry,
                              const std::vector<Eigen::Vector3d>& points,
                              const RegistrationSettings& settings) {
-  return image.isMatrix() && settings.patch_blocks ? matrixPatches(image, geometry, points, settings)
-                                                   : cloudPatches(image, points, settings);
+  return image.isMatrix() && settings.patch_grouping == PatchGrouping::Blocks
+             ? blockPatches(image, geometry, points, settings)
+             : cubePatches(image, geometry, points, settings);
 }
 
 }  // namespace tiltmap

@@ -12,10 +12,11 @@
 
 namespace tiltmap {
 
-// A matrix is cut into blocks of patch_rows x patch_columns cells, after cells on edges are dropped; an
-// unordered cloud into cubes of patch_size_m. Each group is halved at its mean across its longest axis until
-// its residual fits the noise model, at most patch_splits times, each half with at least patch_min_points;
-// what still does not fit is dropped. `points` are cellPoints() of the image; normals point to the scanner.
+// The points are cut into cubes of patch_size_m or, of a matrix and where asked, into blocks of patch_rows x
+// patch_columns cells. Each group is halved at its mean across its longest axis until its residual fits the
+// noise model, at most patch_splits times. What cannot be halved any more, for that or for want of points
+// (patch_min_points), is kept where it fits the wider model of rough surfaces, and dropped otherwise.
+// `points` are cellPoints() of the image; normals point to the scanner.
 SurfaceElements planePatches(const RangeImage& image, const ScannerGeometry& geometry,
                              const std::vector<Eigen::Vector3d>& points,
                              const RegistrationSettings& settings);

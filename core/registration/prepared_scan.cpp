@@ -13,6 +13,7 @@ namespace tiltmap {
 namespace {
 
 constexpr double kBucket_rad = 3.0 * kDegree;
+constexpr double kWideBucket_rad = 9.0 * kDegree;
 
 MedianFilterSettings filterSettings(const RegistrationSettings& settings) {
   MedianFilterSettings filter;
@@ -102,10 +103,12 @@ PreparedScanPtr prepare(const Scan& scan, const RegistrationSettings& settings) 
                              : pointElements(*image, points, settings);
   }
   if (!prepared->elements.empty()) {
-    if (settings.pair_choice == PairChoice::Projective)
+    if (settings.pair_choice == PairChoice::Projective) {
       prepared->directions.emplace(prepared->elements.position, kBucket_rad);
-    else
+      prepared->wide_directions.emplace(prepared->elements.position, kWideBucket_rad);
+    } else {
       prepared->tree.emplace(prepared->elements.position);
+    }
   }
   prepared->milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();

@@ -21,8 +21,9 @@ struct PreparedScan {
   SurfaceElements elements;
   std::optional<KdTree> tree;                // over element positions; absent where empty or not asked for
   std::optional<DirectionIndex> directions;  // likewise
-  std::size_t raw_points = 0;                // cells with a point before the filter
-  std::size_t filter_changes = 0;            // cells the filter changed
+  std::optional<DirectionIndex> wide_directions;  // the same in larger buckets, for the first steps
+  std::size_t raw_points = 0;                     // cells with a point before the filter
+  std::size_t filter_changes = 0;                 // cells the filter changed
   double milliseconds = 0.0;
   std::vector<std::string> warnings;
 };

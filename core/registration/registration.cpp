@@ -132,9 +132,8 @@ StepReport Registration::step(const std::stop_token& stop) {
 }
 
 void Registration::findPairsOfStep(StepReport& report) {
-  const bool both = settings_.both_directions && loss_scale_m_ <= settings_.both_directions_below_m;
-  report.rejected =
-      findPairs(*fixed_, *moving_, pose_, fixed_sample_, moving_sample_, both, settings_, rejection_, pairs_);
+  report.rejected = findPairs(*fixed_, *moving_, pose_, fixed_sample_, moving_sample_, loss_scale_m_,
+                              settings_, rejection_, pairs_);
   report.pairs = kept_ = report.rejected[static_cast<std::size_t>(RejectReason::None)];
   report.loss_scale_m = loss_scale_m_;
 }

@@ -37,23 +37,31 @@ void addPreparation(Table& t) {
          "thesis 4.2.2.3");
   t.integer("normal-neighbours", &S::normal_neighbours, "", 3, 100,
             "Points that a normal is taken from where a scan is no matrix.", "ours");
-  t.boolean("patch-blocks", &S::patch_blocks,
-            "Cut a matrix into blocks of cells before splitting; off: into cubes, as unordered clouds are.",
-            "ours");
-  t.real("patch-size", &S::patch_size_m, "m", 0.1, 20.0, "Edge of the cubes that clouds are cut into.",
-         "ours");
-  t.integer("patch-rows", &S::patch_rows, "cells", 3, 1000, "Height of the blocks that a matrix is cut into.",
-            "ours");
+  t.choice("patch-grouping", &S::patch_grouping,
+           {{"cubes", PatchGrouping::Cubes}, {"blocks", PatchGrouping::Blocks}},
+           "What plane patches are split from: cubes of space, or blocks of the matrix's cells (faster; weak "
+           "where most "
+           "surfaces are near).",
+           "ours");
+  t.real("patch-size", &S::patch_size_m, "m", 0.1, 20.0, "Edge of the cubes.", "ours");
+  t.integer("patch-rows", &S::patch_rows, "cells", 3, 1000, "Height of the blocks.", "ours");
   t.integer("patch-columns", &S::patch_columns, "cells", 3, 1000, "Width of the blocks.", "ours");
+  t.boolean("patch-drop-edges", &S::patch_drop_edges,
+            "Leave out cells where 1/range bends, as at edges and in leaves; thin objects go with them.",
+            "ours");
   t.integer("patch-splits", &S::patch_splits, "", 0, 10,
-            "How often a group of points that is not planar is halved before it is dropped.", "ours");
+            "How often a group of points that is not planar is halved.", "ours");
   t.integer("patch-min-points", &S::patch_min_points, "", 4, 1000, "Smaller patches are dropped.", "ours");
-  t.real("patch-noise", &S::patch_range_noise_m, "mm", 0.0, 1000.0,
-         "Range noise in the bound on a patch's residual: 2 sqrt((noise cos incidence)^2 + floor^2).", "ours",
-         0.001);
-  t.real("patch-floor", &S::patch_floor_m, "mm", 0.0, 1000.0,
-         "Roughness of real surfaces in the same bound. Too small a value drops rough ground and facades.",
+  t.real(
+      "patch-noise", &S::patch_noise_m, "mm", 0.0, 1000.0,
+      "Range noise: a group is split while its residual is above 2 sqrt((noise cos incidence)^2 + floor^2).",
+      "ours; 12 mm is the LMS-291", 0.001);
+  t.real("patch-floor", &S::patch_floor_m, "mm", 0.0, 1000.0, "The floor in the same bound.", "ours", 0.001);
+  t.real("patch-rough-noise", &S::patch_rough_noise_m, "mm", 0.0, 1000.0,
+         "What cannot be split further is kept while its residual is below the same bound with this noise.",
          "ours", 0.001);
+  t.real("patch-rough-floor", &S::patch_rough_floor_m, "mm", 0.0, 1000.0,
+         "And with this floor. Too small a value drops rough ground and facades.", "ours", 0.001);
   t.choice("sampling", &S::sampling,
            {{"all", Sampling::All},
             {"uniform", Sampling::Uniform},
@@ -78,6 +86,9 @@ void addPairing(Table& t) {
       "line "
       "along the normal, or the nearest with a fitting normal in about the same direction from the scanner.",
       "thesis 4.2.4; Besl and McKay 1992; Chen and Medioni 1991; ours");
+  t.real("wide-search-above", &S::wide_search_above_m, "m", 0.0, 1000.0,
+         "The projective choice looks in a three times wider field while the loss scale is above this.",
+         "ours");
   t.boolean("both-directions", &S::both_directions,
             "Pair the fixed scan's elements with the moving scan's too.", "ours");
   t.real("both-directions-below", &S::both_directions_below_m, "m", 0.0, 100.0,
@@ -166,6 +177,7 @@ RegistrationSettings thesisSettings() {
   s.loss = Loss::None;
   s.max_iterations = 100;
   s.min_change = 1e-3;
+  s.min_agreement = 0.4;  // ours: point pairs on lines 0.8 deg apart agree less
   return s;
 }
 

@@ -16,6 +16,11 @@ enum class Reduction {
   Voxel,    // the mean of each cube
   Patches,  // plane patches with their covariance
 };
+// What plane patches are split from.
+enum class PatchGrouping {
+  Cubes,   // of space: the same for matrices and unordered clouds
+  Blocks,  // of cells, where the scan is a matrix; faster, but small where surfaces are near
+};
 enum class Sampling { All, Uniform, Random, NormalSpace };
 enum class PairChoice {
   BestNormalInLeaf,  // thesis 4.2.4
@@ -50,14 +55,19 @@ struct RegistrationSettings : RejectionSettings {
   Reduction reduction = Reduction::Patches;
   double reduction_distance_m = 0.5;  // line and voxel
   int normal_neighbours = 12;         // normals of an unordered cloud, for point methods
-  bool patch_blocks = true;   // matrices are cut into blocks of cells; false: into cubes, as clouds are
-  double patch_size_m = 2.0;  // cubes that unordered clouds are cut into before splitting
-  int patch_rows = 12;        // blocks of cells that a matrix is cut into before splitting
-  int patch_columns = 24;
-  int patch_splits = 4;  // at most so many halvings
-  int patch_min_points = 6;
-  double patch_range_noise_m = 0.03;  // planar: residual below 2 * sqrt((noise cos incidence)^2 + floor^2)
-  double patch_floor_m = 0.02;
+  PatchGrouping patch_grouping = PatchGrouping::Cubes;
+  double patch_size_m = 2.0;  // edge of the cubes
+  int patch_rows = 12;        // size of the blocks, cells
+  int patch_columns = 12;
+  bool patch_drop_edges = false;  // leave out cells at depth edges (regular matrices)
+  int patch_splits = 5;           // at most so many halvings
+  int patch_min_points = 5;
+  // A group is planar, and not split, when its residual is below 2 sqrt((noise cos incidence)^2 + floor^2);
+  // one that cannot be split further is kept when it is below the same of the rough surfaces.
+  double patch_noise_m = 0.012;
+  double patch_floor_m = 0.002;
+  double patch_rough_noise_m = 0.03;
+  double patch_rough_floor_m = 0.02;
 
   // Sampling.
   Sampling sampling = Sampling::All;
@@ -65,6 +75,7 @@ struct RegistrationSettings : RejectionSettings {
   int seed = 1;
 
   PairChoice pair_choice = PairChoice::Projective;
+  double wide_search_above_m = 0.3;      // projective: three times wider while the loss scale is above
   bool both_directions = true;           // also pair the fixed scan's elements with the moving ones
   double both_directions_below_m = 0.1;  // only once the loss scale is below; loss none: always
 
@@ -85,7 +96,7 @@ struct RegistrationSettings : RejectionSettings {
   double min_rotation_rad = 2e-6;
   int min_pairs = 12;
   double min_overlap = 0.1;        // below: the scans do not overlap, whatever the residual
-  double min_agreement = 0.5;      // share of pairs that agree within three deviations; below: no overlap
+  double min_agreement = 0.45;     // share of pairs that agree within three deviations; below: no overlap
   double min_eigenvalue = 3e-4;    // of the normalised information; below: degenerate
   double max_correction_m = 15.0;  // further from the start: diverged
   double max_correction_rad = 1.5707963267948966;
