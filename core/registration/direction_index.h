@@ -30,7 +30,7 @@ class DirectionIndex {
       const int begin = row_start_[static_cast<std::size_t>(r)];
       const int count = row_start_[static_cast<std::size_t>(r) + 1] - begin;
       const int middle = bucketInRow(turn, count);
-      if (count <= 3) {
+      if (count <= kPolarRow) {
         visitRange(begin, begin + count, visit);
       } else if (middle == 0) {
         visitRange(begin, begin + 2, visit);
@@ -46,6 +46,8 @@ class DirectionIndex {
 
  private:
   static constexpr int kTable = 2048;
+  static constexpr int kPolarRow =
+      16;  // rows this short lie so near a pole that one bucket to each side is too little
   bool place(const Eigen::Vector3d& p, int& row, float& turn) const;
   static int bucketInRow(float turn, int count) {
     const int bucket = static_cast<int>(turn * static_cast<float>(count));

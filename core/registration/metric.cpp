@@ -11,6 +11,8 @@ namespace tiltmap {
 
 namespace {
 
+constexpr double kNoiseFactor =
+    3.0;  // an eigenvalue below so many times what noisy normals make of a plane is none
 constexpr double kFittingPoint_m =
     0.5;  // points agree within this (the neighbour criterion of thesis chapter 6)
 
@@ -50,7 +52,8 @@ struct Accumulator {
 struct Residual {
   double r = 0.0;
   Eigen::Vector3d turn, normal;
-  double variance = 1.0;  // m^2
+  double variance = 1.0;     // m^2
+  double slope_noise = 0.0;  // variance of the normal, along the surface
 };
 
 Residual pointToPlane(const Placed& e) {
@@ -77,6 +80,8 @@ Residual patchToPatch(const Placed& e, const PatchShape& fixed, const PatchShape
   result.turn = e.p.cross(result.normal) + (1.0 - a) * e.np.cross(d);
   result.variance = fixed.offset_variance_m2 + moving.offset_variance_m2 + a * a * tilt_fixed +
                     (1.0 - a) * (1.0 - a) * tilt_moving;
+  result.slope_noise = 0.5 * (a * a * (fixed.tilt_variance_u + fixed.tilt_variance_v) +
+                              (1.0 - a) * (1.0 - a) * (moving.tilt_variance_u + moving.tilt_variance_v));
   return result;
 }
 
@@ -120,6 +125,7 @@ struct Sums {
   void addPlane(const Residual& residual, const Eigen::Vector3d& p, double w) {
     accumulator.add(residual.turn, residual.normal, w, residual.r);
     weigh(p, w);
+    system.slope_noise += w * residual.slope_noise;
   }
   void weigh(const Eigen::Vector3d& p, double w) {
     system.plane_weight += w;
@@ -147,7 +153,8 @@ void linearise(Metric metric, const SurfaceElements& fixed, const SurfaceElement
                const Pose& common_from_fixed, const Pose& common_from_moving,
                std::span<const Correspondence> pairs, const RegistrationSettings& settings,
                double loss_scale_m, LinearSystem& system, std::vector<double>* residuals_m) {
-  if (metric == Metric::PatchToPatch && !pairs.empty() && (!fixed.arePatches() || !moving.arePatches()))
+  if (metric == Metric::PatchToPatch &&
+      (fixed.shape.size() != fixed.size() || moving.shape.size() != moving.size()))
     throw std::logic_error("linearise: the patch metric needs patches");
   if (residuals_m) residuals_m->clear();
   Sums sums{system, {}, loss_scale_m * loss_scale_m, residuals_m};
@@ -204,6 +211,7 @@ void linearise(Metric metric, const SurfaceElements& fixed, const SurfaceElement
 Conditioning conditioningOf(const LinearSystem& system, double weak_below) {
   Conditioning result;
   if (!(system.plane_weight > 0.0)) return result;
+  const double bound = std::max(weak_below, kNoiseFactor * system.slope_noise / system.plane_weight);
   const Eigen::Vector3d centre = system.moment / system.plane_weight;
   const double spread = system.square_moment / system.plane_weight - centre.squaredNorm();
   const double radius = std::sqrt(std::max(spread, 1e-6));
@@ -219,7 +227,7 @@ Conditioning conditioningOf(const LinearSystem& system, double weak_below) {
   result.directions = a * solver.eigenvectors();
   result.weak = 0;
   for (int i = 0; i < 6; ++i)
-    if (!(result.eigenvalues[i] >= weak_below)) ++result.weak;
+    if (!(result.eigenvalues[i] >= bound)) ++result.weak;
   return result;
 }
 

@@ -49,6 +49,7 @@ struct LinearSystem {
   double plane_weight = 0.0;  // sum of the weights in h, their first and second moments in the common frame
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   double square_moment = 0.0;
+  double slope_noise = 0.0;  // sum of the weights times the variance of the normals (patches)
 };
 
 // Adds up the kept pairs at two poses into a common frame (pairwise: that of the fixed scan, its pose the
@@ -60,12 +61,12 @@ void linearise(Metric metric, const SurfaceElements& fixed, const SurfaceElement
                double loss_scale_m, LinearSystem& system, std::vector<double>* residuals_m = nullptr);
 
 // What the surfaces determine: h per unit weight, about the pairs' centre, rotations measured as displacement
-// at their root mean square distance from it. Dimensionless; 0 means free to slide or turn.
+// at their root mean square distance from it. Dimensionless; 0 means free to slide or turn. Noisy normals let
+// a plane look as if it held a little; what they would make of one counts as weak too.
 struct Conditioning {
   Vector6d eigenvalues = Vector6d::Zero();  // ascending
-  Matrix6d directions =
-      Matrix6d::Zero();  // a column each: (rotation, translation) for Pose::moved, common frame
-  int weak = 6;          // how many lie below the bound
+  Matrix6d directions = Matrix6d::Zero();   // a column each: (rotation, translation) for Pose::moved
+  int weak = 6;                             // how many lie below the bound
 };
 Conditioning conditioningOf(const LinearSystem& system, double weak_below);
 

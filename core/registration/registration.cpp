@@ -159,7 +159,7 @@ std::optional<StopReason> Registration::advance(StepReport& report) {
   if (!pose_.isFinite() || from_start.translation_m > settings_.max_correction_m ||
       from_start.rotation_rad > settings_.max_correction_rad) {
     if (!pose_.isFinite()) pose_ = before;
-    return StopReason::Diverged;
+    return overlap_ < settings_.min_overlap ? StopReason::NoOverlap : StopReason::Diverged;
   }
   const bool settling = own_scale_steps_left_ == 0;
   updateLossScale();

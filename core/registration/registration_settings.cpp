@@ -177,7 +177,6 @@ RegistrationSettings thesisSettings() {
   s.loss = Loss::None;
   s.max_iterations = 100;
   s.min_change = 1e-3;
-  s.min_agreement = 0.4;  // ours: point pairs on lines 0.8 deg apart agree less
   return s;
 }
 

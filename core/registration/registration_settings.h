@@ -96,7 +96,7 @@ struct RegistrationSettings : RejectionSettings {
   double min_rotation_rad = 2e-6;
   int min_pairs = 12;
   double min_overlap = 0.1;        // below: the scans do not overlap, whatever the residual
-  double min_agreement = 0.45;     // share of pairs that agree within three deviations; below: no overlap
+  double min_agreement = 0.4;      // share of pairs that agree within three deviations; below: no overlap
   double min_eigenvalue = 3e-4;    // of the normalised information; below: degenerate
   double max_correction_m = 15.0;  // further from the start: diverged
   double max_correction_rad = 1.5707963267948966;
