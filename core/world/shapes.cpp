@@ -165,8 +165,10 @@ Eigen::AlignedBox3d Ball::bounds() const {
 }
 
 std::optional<SurfaceHit> Foliage::hit(const Ray& ray, double max_distance_m) const {
-  // The stretch of the ray inside the ellipsoid, as a unit ball in scaled space.
-  const Eigen::Vector3d scale(1.0 / radius_m, 1.0 / radius_m, 1.0 / half_height_m);
+  // The stretch of the ray where clumps may be, as a unit ball in scaled space: their centres lie in the
+  // ellipsoid, so they stand out of it by up to their radius.
+  constexpr double kOut = 0.5 * kCellM;
+  const Eigen::Vector3d scale(1.0 / (radius_m + kOut), 1.0 / (radius_m + kOut), 1.0 / (half_height_m + kOut));
   const Eigen::Vector3d from = ray.origin - centre;
   const Eigen::Vector3d o = from.cwiseProduct(scale), d = ray.direction.cwiseProduct(scale);
   const double a = d.squaredNorm(), b = o.dot(d), root = b * b - a * (o.squaredNorm() - 1.0);
@@ -175,6 +177,12 @@ std::optional<SurfaceHit> Foliage::hit(const Ray& ray, double max_distance_m) co
   const double end = std::min(max_distance_m, (-b + std::sqrt(root)) / a);
   if (start >= end) return std::nullopt;
 
+  const auto holds = [&](const Eigen::Vector3d& p) {
+    const Eigen::Vector3d from_centre = p - centre;
+    return from_centre.head<2>().squaredNorm() / (radius_m * radius_m) +
+               from_centre.z() * from_centre.z() / (half_height_m * half_height_m) <
+           1.0;
+  };
   // From cell to cell (Amanatides and Woo 1987).
   const Eigen::Vector3d entry = from + start * ray.direction;
   std::array<std::int64_t, 3> cell{};
@@ -200,7 +208,8 @@ std::optional<SurfaceHit> Foliage::hit(const Ray& ray, double max_distance_m) co
                              0.08 * (part(hash, 16 + 12 * axis) - 0.5);
       clump.radius_m = 0.08 + 0.03 * part(hash, 8);
       clump.reflectivity = reflectivity;
-      if (const auto found = clump.hit(ray, max_distance_m)) return found;
+      if (holds(clump.centre))
+        if (const auto found = clump.hit(ray, max_distance_m)) return found;
     }
     int axis = 0;
     if (next.y() < next[axis]) axis = 1;

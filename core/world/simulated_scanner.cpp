@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace tiltmap {
 
@@ -48,11 +49,16 @@ class Spotlight {
   template <std::size_t N>
   std::size_t cast(const std::array<SubRay, N>& pattern, std::array<Strike, 13>& strikes,
                    std::array<bool, 13>& struck) const {
-    std::size_t count = 0;
+    std::array<Ray, N> rays;
+    std::array<std::optional<SurfaceHit>, N> hits;
     for (std::size_t i = 0; i < N; ++i) {
       const Eigen::Vector3d aside = pattern[i].across * across_ + pattern[i].along * along_;
-      const Ray ray{axis_.origin + beam_.spot_m * aside, axis_.direction + beam_.divergence_rad * aside};
-      const auto hit = site_.cast(ray, kCastBeyond * beam_.maximum_range_m);
+      rays[i] = {axis_.origin + beam_.spot_m * aside, axis_.direction + beam_.divergence_rad * aside};
+    }
+    site_.cast(rays, kCastBeyond * beam_.maximum_range_m, hits);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < N; ++i) {
+      const std::optional<SurfaceHit>& hit = hits[i];
       struck[i] = hit.has_value();
       if (!hit) continue;
       // Rough walls and ground send more back at a slant than an ideal diffuse surface: a fifth regardless of

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 
 namespace tiltmap {
 
@@ -109,57 +110,94 @@ void Site::build(std::uint32_t node, std::uint32_t first, std::uint32_t last,
 }
 
 std::optional<SurfaceHit> Site::cast(const Ray& ray, double max_distance_m) const {
-  std::optional<SurfaceHit> best;
-  double reach = max_distance_m;
-  bool on_ground = false;
-  if (const auto t = ground_.hit(ray, max_distance_m)) {
-    reach = *t;
-    on_ground = true;
+  std::optional<SurfaceHit> hit;
+  cast(std::span(&ray, 1), max_distance_m, std::span(&hit, 1));
+  return hit;
+}
+
+void Site::cast(std::span<const Ray> rays, double max_distance_m,
+                std::span<std::optional<SurfaceHit>> hits) const {
+  if (rays.size() > kMaxBundle || hits.size() < rays.size())
+    throw std::invalid_argument("Site::cast: too many rays, or too few slots for their hits");
+  std::array<double, kMaxBundle> reach{};
+  std::array<bool, kMaxBundle> ground{};
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    hits[i].reset();
+    const auto t = ground_.hit(rays[i], max_distance_m);
+    ground[i] = t.has_value();
+    reach[i] = t.value_or(max_distance_m);
   }
-  if (!nodes_.empty()) {
-    Eigen::Array4f origin, inverse;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double d = ray.direction[axis];
-      origin[axis] = static_cast<float>(ray.origin[axis]);
-      // Never infinite: 0 * infinity is no number, and a box would be missed.
-      inverse[axis] = static_cast<float>(1.0 / (std::abs(d) > 1e-12 ? d : std::copysign(1e-12, d)));
-    }
-    origin[3] = 0.0F;
-    inverse[3] = 1.0F;
-    const auto entry = [&](const Node& node) {
-      const Eigen::Array4f a = (node.low - origin) * inverse, b = (node.high - origin) * inverse;
-      const float in = a.min(b).maxCoeff(), out = a.max(b).minCoeff();
-      return in <= out * 1.00001F ? in : kNever;
-    };
-    std::array<std::pair<std::uint32_t, float>, 64> stack;
-    std::size_t depth = 0;
-    if (const float in = entry(nodes_[0]); in < static_cast<float>(reach)) stack[depth++] = {0U, in};
-    while (depth > 0) {
-      const auto [index, in] = stack[--depth];
-      if (in > static_cast<float>(reach)) continue;
-      const Node& node = nodes_[index];
-      if (node.count > 0) {
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-          if (auto found = hitOf(shapes_[i], ray, reach)) {
-            reach = found->distance_m;
-            best = std::move(found);
-            on_ground = false;
-          }
-        continue;
-      }
+  if (!nodes_.empty() && !rays.empty()) castAtShapes(rays, std::span(reach).first(rays.size()), hits);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i] || !ground[i]) continue;
+    const Eigen::Vector3d p = rays[i].origin + reach[i] * rays[i].direction;
+    const double reflectivity = reflectivity_ ? reflectivity_(p.x(), p.y()) : kPlainGround;
+    hits[i] = SurfaceHit{reach[i], ground_.normal(p.x(), p.y()), reflectivity};
+  }
+}
+
+// Follows the first ray through boxes that are widened by as much as the others can be away from it.
+void Site::castAtShapes(std::span<const Ray> rays, std::span<double> reach,
+                        std::span<std::optional<SurfaceHit>> hits) const {
+  const Ray& axis = rays.front();
+  double apart = 0.0, spread = 0.0;
+  for (const Ray& ray : rays) {
+    apart = std::max(apart, (ray.origin - axis.origin).norm());
+    spread = std::max(spread, (ray.direction - axis.direction).norm());
+  }
+  float limit = 0.0F, margin = 0.0F;  // how far any of the rays still looks, and the widening for it
+  const auto look = [&] {
+    const double farthest = *std::max_element(reach.begin(), reach.end());
+    limit = static_cast<float>(farthest) * 1.0001F;
+    margin = static_cast<float>(apart + spread * farthest);
+  };
+  look();
+
+  Eigen::Array4f origin, inverse;
+  for (int i = 0; i < 3; ++i) {
+    const double d = axis.direction[i];
+    origin[i] = static_cast<float>(axis.origin[i]);
+    // Never infinite: 0 * infinity is no number, and a box would be missed.
+    inverse[i] = static_cast<float>(1.0 / (std::abs(d) > 1e-12 ? d : std::copysign(1e-12, d)));
+  }
+  origin[3] = 0.0F;
+  inverse[3] = 1.0F;
+  const auto entry = [&](const Node& node) {
+    const Eigen::Array4f a = (node.low - margin - origin) * inverse,
+                         b = (node.high + margin - origin) * inverse;
+    const float in = a.min(b).maxCoeff(), out = a.max(b).minCoeff();
+    return in <= out * 1.00001F ? std::max(in, 0.0F) : kNever;
+  };
+  std::array<std::uint32_t, 64> stack;
+  std::array<float, 64> entered;
+  std::size_t depth = 0;
+  const auto push = [&](std::uint32_t node, float in) {
+    if (in > limit) return;
+    stack[depth] = node;
+    entered[depth++] = in;
+  };
+  push(0, entry(nodes_[0]));
+  while (depth > 0) {
+    --depth;
+    if (entered[depth] > limit) continue;
+    const Node& node = nodes_[stack[depth]];
+    if (node.count == 0) {
       const float left = entry(nodes_[node.first]), right = entry(nodes_[node.first + 1]);
       const bool left_first = left <= right;
-      const std::uint32_t near = left_first ? node.first : node.first + 1;
-      const std::uint32_t far = left_first ? node.first + 1 : node.first;
-      const auto limit = static_cast<float>(reach);
-      if (std::max(left, right) <= limit) stack[depth++] = {far, std::max(left, right)};
-      if (std::min(left, right) <= limit) stack[depth++] = {near, std::min(left, right)};
+      push(left_first ? node.first + 1 : node.first, std::max(left, right));
+      push(left_first ? node.first : node.first + 1, std::min(left, right));
+      continue;
     }
+    bool nearer = false;
+    for (std::uint32_t k = node.first; k < node.first + node.count; ++k)
+      for (std::size_t i = 0; i < rays.size(); ++i)
+        if (auto found = hitOf(shapes_[k], rays[i], reach[i])) {
+          reach[i] = found->distance_m;
+          hits[i] = std::move(found);
+          nearer = true;
+        }
+    if (nearer) look();
   }
-  if (!on_ground) return best;
-  const Eigen::Vector3d p = ray.origin + reach * ray.direction;
-  return SurfaceHit{reach, ground_.normal(p.x(), p.y()),
-                    reflectivity_ ? reflectivity_(p.x(), p.y()) : kPlainGround};
 }
 
 double Site::clearance(const Eigen::Vector3d& point) const {

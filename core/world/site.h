@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/world/ground.h"
@@ -20,6 +21,12 @@ class Site {
 
   // The nearest surface along the ray.
   std::optional<SurfaceHit> cast(const Ray& ray, double max_distance_m) const;
+  // The same for up to kMaxBundle rays that stay close to the first one, in one walk through the tree:
+  // hits[i] is what cast(rays[i]) gives. Throws std::invalid_argument for more rays, or fewer slots than
+  // rays.
+  static constexpr std::size_t kMaxBundle = 16;
+  void cast(std::span<const Ray> rays, double max_distance_m,
+            std::span<std::optional<SurfaceHit>> hits) const;
   // At most the distance from the point to the nearest shape (not the ground); not positive inside one.
   // Infinite for a site without shapes.
   double clearance(const Eigen::Vector3d& point) const;
@@ -33,6 +40,8 @@ class Site {
     std::uint32_t first = 0;   // leaf: first shape; inner: the left child, the right one follows it
     std::uint32_t count = 0;   // shapes of a leaf; 0 for an inner node
   };
+  void castAtShapes(std::span<const Ray> rays, std::span<double> reach,
+                    std::span<std::optional<SurfaceHit>> hits) const;
   void build(std::uint32_t node, std::uint32_t first, std::uint32_t last, std::vector<std::uint32_t>& order,
              const std::vector<Eigen::AlignedBox3d>& bounds);
 

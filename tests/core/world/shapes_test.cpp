@@ -80,6 +80,9 @@ TEST(Shapes, FoliageLetsSomeBeamsThroughAndAlwaysTheSame) {
     ASSERT_TRUE(again);
     EXPECT_NEAR(again->distance_m + 2.0, hit->distance_m, 1e-9)
         << "the leaf must not depend on where one stands";
+    // Nor on how far one looks, as long as it is far enough.
+    EXPECT_TRUE(crown.hit(ray, hit->distance_m + 1e-6));
+    EXPECT_FALSE(crown.hit(ray, hit->distance_m - 1e-6));
     EXPECT_LT(crown.distance(ray.origin + hit->distance_m * ray.direction), 0.3);
   }
   EXPECT_GT(struck, 100);
