@@ -42,14 +42,14 @@ struct ExportScan {
   int index = 0;         // written as the field `scan`
   Pose world_from_scan;  // points leave the program in the world frame unless the format carries a pose
   PointCloud cloud;      // raw (cloudOf) or reduced
-  // The range matrix. Where it is given, `cloud` is not used and may be left empty: formats with a matrix
-  // (PTX; PCD and .3d of a single scan) get every cell, the others the cells with a point.
+  // The range matrix, for the formats that can keep it (see writeCloud). The others write `cloud`, or, where
+  // that is empty, the cells with a point.
   RangeImagePtr image;
   ScannerGeometry geometry;
 };
 
-// What to write, scan by scan, so that only one need be in memory. `scan` may be called twice for each number
-// (colouring by height or intensity needs the range of values first) and must give the same both times.
+// What to write, scan by scan, so that only one need be in memory. `scan` is called several times for each
+// number (to count, to write, in VTK for each attribute) and must give the same every time.
 struct CloudForExport {
   std::size_t scans = 0;
   std::function<Result<ExportScan>(std::size_t)> scan;
@@ -70,10 +70,11 @@ struct WriteOptions {
 // Writes beside `path` and renames when complete: on an Error (full disk, no permission, cancelled, a scan
 // that cannot be had) the file that was there before is untouched and no other is left.
 //
-// A PCD or .3d of one scan with its matrix is organised (HEIGHT = rows, cells without a point NaN; in a .3d
-// at the origin), in the scan's frame, with the pose as VIEWPOINT (or .pose); so is each scan in a PTX (cells
-// without a point 0 0 0; intensity as it is, 0.5 where there is none). All others hold points in the world
-// frame.
+// A single scan whose `image` is a matrix stays one: as organised PCD (HEIGHT = rows, cells without a point
+// NaN, scan frame, the pose as VIEWPOINT), as PLY with a range_grid and the pose in a comment (vertices in
+// the world frame, which a comment tells), unless normals or colours are to be written. So does every scan in
+// a PTX (cells without a point 0 0 0; intensity as it is, 0.5 where there is none) and the one of a .3d (at
+// the origin; .pose beside it). Everything else holds points in the world frame. XYZ has no normals.
 Status writeCloud(const std::filesystem::path& path, const CloudForExport& cloud,
                   const WriteOptions& options = {}, const JobControl& control = {});
 

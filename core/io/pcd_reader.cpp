@@ -336,6 +336,22 @@ double scalarAt(const std::uint8_t* at, const pcl::PCLPointField& field) {
   }
 }
 
+// The header again, in the one spelling that PCL and we cannot read in two ways.
+std::string plainHeader(const Header& header) {
+  std::string fields = "FIELDS", sizes = "SIZE", types = "TYPE", counts = "COUNT";
+  for (const Field& field : header.fields) {
+    fields += " " + field.name;
+    sizes += " " + std::to_string(field.size);
+    types += std::string(" ") + field.type;
+    counts += " " + std::to_string(field.count);
+  }
+  const char* const kinds[] = {"ascii", "binary", "binary_compressed"};
+  return "VERSION 0.7\n" + fields + "\n" + sizes + "\n" + types + "\n" + counts + "\nWIDTH " +
+         std::to_string(header.width) + "\nHEIGHT " + std::to_string(header.height) +
+         "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(header.points) + "\nDATA " +
+         kinds[static_cast<int>(header.body)] + "\n";
+}
+
 // The points, decoded by PCL from memory that has been checked: nothing can change between check and use.
 Result<pcl::PCLPointCloud2> decoded(std::string_view bytes, const Header& header,
                                     const ParseContext& context) {
@@ -350,7 +366,7 @@ Result<pcl::PCLPointCloud2> decoded(std::string_view bytes, const Header& header
                           "export it again, as ascii if need be");
   };
   try {
-    std::istringstream header_stream(std::string(bytes.substr(0, header.body_at)));
+    std::istringstream header_stream(plainHeader(header));
     if (reader.readHeader(header_stream, cloud, origin, orientation, version, data_type, body_at) != 0)
       return bad();
     if (cloud.data.size() != static_cast<std::size_t>(header.points) * header.pointBytes()) return bad();

@@ -12,9 +12,9 @@ namespace tiltmap {
 
 namespace {
 
-tl::unexpected<Error> refuseLine(const std::filesystem::path& path, std::size_t line, std::string what,
+tl::unexpected<Error> refuseLine(const std::string& path, std::size_t line, std::string what,
                                  std::string remedy = "correct the line: index x y z qx qy qz qw") {
-  return fail(std::move(what), path.string() + ":" + std::to_string(line), std::move(remedy));
+  return fail(std::move(what), path + ":" + std::to_string(line), std::move(remedy));
 }
 
 // `index` as a whole number, also where it is written as 3.000000.
@@ -49,8 +49,12 @@ Eigen::Matrix3d swapped() {
 Result<IndexedPoses> readPosesTum(const std::filesystem::path& path) {
   const auto bytes = fileBytes(path);
   if (!bytes) return fail(bytes.error());
+  return parsePosesTum(*bytes, path.string());
+}
+
+Result<IndexedPoses> parsePosesTum(std::string_view bytes, const std::string& path) {
   IndexedPoses poses;
-  TextCursor cursor(*bytes);
+  TextCursor cursor(bytes);
   std::string_view line;
   while (cursor.nextLine(line)) {
     const std::string_view text = trimmed(line);
@@ -77,7 +81,7 @@ Result<IndexedPoses> readPosesTum(const std::filesystem::path& path) {
                         "leave one pose for each scan");
   }
   if (poses.empty())
-    return fail("the file holds no poses", path.string(), "write a line a scan: index x y z qx qy qz qw");
+    return fail("the file holds no poses", path, "write a line a scan: index x y z qx qy qz qw");
   return poses;
 }
 
@@ -163,8 +167,12 @@ Pose3dtk poseTo3dtk(const Pose& pose) {
 Result<Pose> readPose3dtk(const std::filesystem::path& path) {
   const auto bytes = fileBytes(path);
   if (!bytes) return fail(bytes.error());
+  return parsePose3dtk(*bytes, path.string());
+}
+
+Result<Pose> parsePose3dtk(std::string_view bytes, const std::string& path) {
   const char* const remedy = "a .pose file holds x y z in cm and three angles in degrees";
-  TextCursor cursor(*bytes);
+  TextCursor cursor(bytes);
   std::string_view word;
   std::array<double, 6> v{};
   std::size_t count = 0;
@@ -177,7 +185,7 @@ Result<Pose> readPose3dtk(const std::filesystem::path& path) {
     v[count] = *value;
   }
   if (count < v.size())
-    return fail("there are " + std::to_string(count) + " numbers instead of six", path.string(), remedy);
+    return fail("there are " + std::to_string(count) + " numbers instead of six", path, remedy);
   return poseFrom3dtk({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,6 +22,8 @@ using IndexedPoses = std::map<int, Pose>;
 // number of words, words that are no finite numbers, an index that is negative, not whole or there twice, a
 // quaternion whose length is not 1 within 1 %. A file without any pose is refused, too.
 Result<IndexedPoses> readPosesTum(const std::filesystem::path& path);
+// The same of text in memory; `file` is what errors name.
+Result<IndexedPoses> parsePosesTum(std::string_view text, const std::string& file);
 
 // Writers replace the file only when the new one is complete. Numbers read back as the same doubles.
 Status writePosesTum(const std::filesystem::path& path, const IndexedPoses& world_from_scan);
@@ -48,6 +51,7 @@ Pose poseFrom3dtk(const Pose3dtk& pose);
 Pose3dtk poseTo3dtk(const Pose& pose);
 // A .pose file: six finite numbers and nothing else.
 Result<Pose> readPose3dtk(const std::filesystem::path& path);
+Result<Pose> parsePose3dtk(std::string_view text, const std::string& file);
 Status writePose3dtk(const std::filesystem::path& path, const Pose& world_from_scan);
 // A .frames file: the pose as a column-major 4 x 4 matrix in 3DTK's frame and a number for its colour (2:
 // final).

@@ -47,7 +47,7 @@ ScanFormat byExtension(const std::filesystem::path& path) {
   if (extension == ".ply") return ScanFormat::Ply;
   if (extension == ".ptx") return ScanFormat::Ptx;
   if (extension == ".vtk") return ScanFormat::Vtk;
-  for (const char* text : {".xyz", ".txt", ".csv", ".asc"})
+  for (const char* text : {".xyz", ".txt", ".csv", ".asc", ".pts"})
     if (extension == text) return ScanFormat::Xyz;
   return ScanFormat::Auto;
 }
@@ -109,10 +109,18 @@ Result<Tables> parseAs(ScanFormat format, std::string_view bytes, const ParseCon
       return parsePcd(bytes, context);
     case ScanFormat::Uos:
       return parseUos(bytes, context);
-    default:
+    case ScanFormat::Ply:
+      return parsePly(bytes, context);
+    case ScanFormat::Ptx:
+      return parsePtx(bytes, context);
+    case ScanFormat::Vtk:
+      return parseVtk(bytes, context);
+    case ScanFormat::Xyz:
+      return parseXyz(bytes, context);
+    case ScanFormat::Auto:
       break;
   }
-  return context.refuse(scanFormatName(format) + " files cannot be read", {}, "convert it to pcd");
+  throw std::invalid_argument("the format must be known before a file is parsed");
 }
 
 Result<ReadResult> readScans(const std::filesystem::path& path, const ReadOptions& options,

@@ -21,7 +21,7 @@ enum class ScanFormat {
   Ply,   // Stanford polygon file, the vertices of it
   Ptx,   // Leica, one or several scans a file
   Vtk,   // legacy VTK, the points of a POLYDATA or UNSTRUCTURED_GRID
-  Xyz,   // .xyz, .txt, .csv, .asc: columns of numbers, their meaning guessed and told in the warnings
+  Xyz,   // .xyz, .txt, .csv, .asc, .pts: columns of numbers, their meaning guessed and told in the warnings
 };
 
 // The words of the command line: auto, pcd, uos, ply, ptx, vtk, xyz; for ParameterTable::choice and for

@@ -46,9 +46,8 @@ class TextCursor {
     line.remove_prefix(end);
     return !word.empty();
   }
-  static bool isBlank(char c) {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
-  }
+  // Not the vertical tab and form feed: other readers take them for parts of words.
+  static bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
   std::size_t position() const { return at_; }  // byte after what was taken last
   void seek(std::size_t position) { at_ = position; }
