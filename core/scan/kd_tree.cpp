@@ -9,6 +9,7 @@ namespace tiltmap {
 
 namespace {
 
+// Share of the widest extent below which an axis is passed over.
 constexpr double kNarrow = 0.5;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -41,16 +42,18 @@ struct OneWithLeaf : One {
 struct Several {
   std::size_t count;
   std::vector<KdTree::Neighbour>& sorted;
-  double bound() const { return sorted.size() < count ? kInfinity : sorted.back().squared_distance; }
+  double limit = kInfinity;  // the last one's distance once there are enough
+  double bound() const { return limit; }
   void offer(const KdTree::Neighbour& candidate, const KdTree::Leaf&) {
-    if (sorted.size() == count) {
-      if (!nearer(candidate, sorted.back())) return;
-      sorted.pop_back();
+    if (sorted.size() < count) {
+      sorted.push_back(candidate);
+    } else if (!nearer(candidate, sorted.back())) {
+      return;
     }
-    std::size_t at = sorted.size();
-    sorted.push_back(candidate);
+    std::size_t at = sorted.size() - 1;
     for (; at > 0 && nearer(candidate, sorted[at - 1]); --at) sorted[at] = sorted[at - 1];
     sorted[at] = candidate;
+    if (sorted.size() == count) limit = sorted.back().squared_distance;
   }
 };
 
@@ -144,23 +147,29 @@ void KdTree::searchLeaf(const Leaf& leaf, const Eigen::Vector3d& query, Found& f
 
 // Called at most once a level, so never deeper than the number of bits of an index.
 template <class Found>
-void KdTree::descend(const Node* node, const Eigen::Vector3d& query, Offsets offsets, Found& found) const {
-  while (node->axis >= 0) {
-    const double beyond_left =
-        query[node->axis] - node->left_end;  // how far the query lies outside either half
+void KdTree::descend(const Node* node, const Eigen::Vector3d& query, Offsets& offsets, Found& found) const {
+  if (node->axis >= 0) {
+    // How far the query lies outside either half.
+    const double beyond_left = query[node->axis] - node->left_end;
     const double before_right = node->split - query[node->axis];
     const bool left_first = beyond_left < before_right;
     descend(nodes_.data() + (left_first ? node->left : node->right), query, offsets, found);
-    offsets.axis[node->axis] = left_first ? before_right : beyond_left;
-    if (offsets.squared() > found.bound()) return;
-    node = nodes_.data() + (left_first ? node->right : node->left);
+    double& offset = offsets.axis[node->axis];
+    const double kept = offset;
+    offset = left_first ? before_right : beyond_left;
+    if (offsets.squared() <= found.bound())
+      descend(nodes_.data() + (left_first ? node->right : node->left), query, offsets, found);
+    offset = kept;
+    return;
   }
   searchLeaf(node->leaf, query, found);
 }
 
 template <class Found>
 void KdTree::search(const Eigen::Vector3d& query, Found& found) const {
-  if (!query.allFinite()) throw std::invalid_argument("KdTree: the query is not finite");
+  // One test for three: the sum is finite only where all of them are.
+  if (!std::isfinite(query[0] + query[1] + query[2]))
+    throw std::invalid_argument("KdTree: the query is not finite");
   if (empty()) return;
   Offsets offsets{};
   for (int axis = 0; axis < 3; ++axis)

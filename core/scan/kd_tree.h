@@ -67,7 +67,7 @@ class KdTree {
   template <class Found>
   void search(const Eigen::Vector3d& query, Found& found) const;
   template <class Found>
-  void descend(const Node* node, const Eigen::Vector3d& query, Offsets offsets, Found& found) const;
+  void descend(const Node* node, const Eigen::Vector3d& query, Offsets& offsets, Found& found) const;
   template <class Found>
   void searchLeaf(const Leaf& leaf, const Eigen::Vector3d& query, Found& found) const;
 

@@ -199,7 +199,8 @@ TEST(KdTree, TakesAxesInTurnAndPassesOverANarrowOne) {
   EXPECT_EQ(root.axis, 0);
   EXPECT_EQ(tree.nodes()[root.left].axis, 1);
   EXPECT_EQ(tree.nodes()[tree.nodes()[root.left].right].axis, 2);
-  for (const KdTree::Node& node : KdTree(floor).nodes()) EXPECT_NE(node.axis, 2);
+  const KdTree flat(floor);
+  for (const KdTree::Node& node : flat.nodes()) EXPECT_NE(node.axis, 2);
 }
 
 TEST(KdTree, AnEmptyTreeFindsNothing) {
