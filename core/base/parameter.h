@@ -118,6 +118,19 @@ class ParameterTable {
         [member](const Settings& s) { return ParameterValue(s.*member); },
         [member](Settings& s, const ParameterValue& v) { s.*member = std::get<std::string>(v); });
   }
+  // Every parameter and preset of another table, whose settings are a member of these.
+  template <class Inner>
+  void include(const ParameterTable<Inner>& inner, Inner Settings::* member) {
+    for (const auto& entry : inner.entries_)
+      add(inner.infos_[entry.index], [get = entry.get, member](const Settings& s) { return get(s.*member); },
+          [set = entry.set, member](Settings& s, const ParameterValue& v) { set(s.*member, v); });
+    for (const auto& [preset, settings] : inner.presets_) {
+      if (preset.name == "default") continue;
+      Settings outer;
+      outer.*member = settings;
+      presets_.push_back({preset, std::move(outer)});
+    }
+  }
   void preset(std::string name, std::string help, Settings settings) {
     presets_.push_back({{std::move(name), std::move(help)}, std::move(settings)});
   }
@@ -163,6 +176,8 @@ class ParameterTable {
   }
 
  private:
+  template <class Other>
+  friend class ParameterTable;
   struct Entry {
     std::size_t index;
     std::function<ParameterValue(const Settings&)> get;

@@ -49,6 +49,10 @@ class Pose {
   // p -> Exp(w) * (R p + t) + v. The solvers' update and covariance use this order: rotation first.
   Pose moved(const Vector6d& d) const;
 
+  // The same numbers, not merely the same motion.
+  bool operator==(const Pose& other) const {
+    return rotation_.coeffs() == other.rotation_.coeffs() && translation_ == other.translation_;
+  }
   bool isFinite() const { return rotation_.coeffs().allFinite() && translation_.allFinite(); }
 
  private:

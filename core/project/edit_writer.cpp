@@ -204,10 +204,12 @@ void EditWriter::apply(const ClearPoses& step) {
 }
 
 void EditWriter::apply(const SetSurvey& step) {
+  const std::string site_frame = step.survey.site_from_world ? storedPoseText(*step.survey.site_from_world) : "";
   const std::pair<const char*, const std::string*> entries[] = {{"site", &step.survey.site},
                                                                 {"operator", &step.survey.operator_name},
                                                                 {"device", &step.survey.device},
-                                                                {"date", &step.survey.date}};
+                                                                {"date", &step.survey.date},
+                                                                {"site_from_world", &site_frame}};
   for (const auto& [key, value] : entries) {
     if (value->empty()) {
       database_.run("DELETE FROM survey WHERE key = ?", key);

@@ -142,6 +142,7 @@ ProjectEdit mergeEdit(const ProjectSnapshot& into, const ProjectSnapshot& other,
   fill(survey.operator_name, other.survey().operator_name);
   fill(survey.device, other.survey().device);
   fill(survey.date, other.survey().date);
+  if (!survey.site_from_world) survey.site_from_world = other.survey().site_from_world;
   if (!(survey == into.survey())) edit.steps.push_back(SetSurvey{survey});
   edit.jobs = other.jobs();
   return edit;

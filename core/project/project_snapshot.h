@@ -33,6 +33,9 @@ struct SurveyInfo {
   std::string operator_name;
   std::string device;
   std::string date;  // as entered; ISO 8601 suggested
+  // Where the world (the frame of the first scan) is in the frame that imported poses came in; nothing where they
+  // came with none.
+  std::optional<Pose> site_from_world;
 
   bool operator==(const SurveyInfo&) const = default;
 };

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/text.h"
 #include "core/project/schema.h"
 
 namespace tiltmap {
@@ -93,6 +94,14 @@ std::vector<Link> readLinks(const Database& database) {
   return links;
 }
 
+std::optional<Pose> poseOfStoredText(const std::string& text) {
+  std::vector<double> n;
+  for (const std::string_view word : splitWords(text))
+    if (const auto number = parseReal(word)) n.push_back(*number);
+  if (n.size() != 7) return std::nullopt;
+  return Pose::restored(Eigen::Quaterniond(n[6], n[3], n[4], n[5]), {n[0], n[1], n[2]});
+}
+
 SurveyInfo readSurvey(const Database& database) {
   SurveyInfo survey;
   Statement query = database.prepare("SELECT key, value FROM survey");
@@ -102,6 +111,7 @@ SurveyInfo readSurvey(const Database& database) {
     if (key == "operator") survey.operator_name = query.text(1);
     if (key == "device") survey.device = query.text(1);
     if (key == "date") survey.date = query.text(1);
+    if (key == "site_from_world") survey.site_from_world = poseOfStoredText(query.text(1));
   }
   return survey;
 }
@@ -236,6 +246,15 @@ SnapshotPtr SnapshotReader::withLine(const ProjectSnapshot& snapshot, ScanId sca
   entry.lines = lines;
   entry.valid_cells = valid_cells;
   return next;
+}
+
+std::string storedPoseText(const Pose& pose) {
+  const Eigen::Vector3d& t = pose.translation();
+  const Eigen::Quaterniond& q = pose.quaternion();
+  std::string text;
+  for (const double number : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()})
+    text += (text.empty() ? "" : " ") + shortestReal(number);
+  return text;
 }
 
 }  // namespace tiltmap

@@ -29,4 +29,7 @@ inline constexpr const char* kGeometryColumns =
     "lever_arm_x_m, lever_arm_y_m, lever_arm_z_m, mounting_qx, mounting_qy, mounting_qz, mounting_qw, "
     "range_offset_m, minimum_range_m, maximum_range_m";
 
+// A pose as one text, "x y z qx qy qz qw", that reads back as the same numbers.
+std::string storedPoseText(const Pose& pose);
+
 }  // namespace tiltmap
