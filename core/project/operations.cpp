@@ -1,12 +1,20 @@
 // The list of the program's operations. A new one is declared beside its maker and added here.
 #include "core/project/edit_operations.h"
 #include "core/project/operation.h"
+#include "core/project/operations/export_operation.h"
+#include "core/project/operations/import_operation.h"
+#include "core/project/operations/register_operation.h"
+#include "core/project/operations/simulate_operation.h"
 
 namespace tiltmap {
 
 const OperationRegistry& operations() {
   static const OperationRegistry registry = [] {
     OperationRegistry all;
+    all.add(makeSimulateOperation());
+    all.add(makeImportOperation());
+    all.add(makeRegisterOperation());
+    all.add(makeExportOperation());
     all.add(makeRenameOperation());
     all.add(makeRebaseOperation());
     return all;

@@ -1,0 +1,92 @@
+#include "core/products/survey_report.h"
+
+#include <algorithm>
+#include <map>
+
+#include "core/project/operation.h"
+#include "core/scan/range_image.h"
+
+namespace tiltmap {
+
+namespace {
+
+constexpr std::size_t kMostPoints = 3'000'000;
+
+ReportStage stageReport(const ProjectSnapshot& snapshot, Stage stage) {
+  const std::vector<Pose> poses = snapshot.filledPoses(stage);
+  ReportStage report{localisationTable(stageName(stage), poses), std::nullopt};
+  if (stage == Stage::Truth || !snapshot.hasStage(Stage::Truth)) return report;
+  if (auto evaluation = evaluateTrajectory(poses, snapshot.filledPoses(Stage::Truth)))
+    report.evaluation = *evaluation;
+  return report;
+}
+
+std::vector<ReportPair> pairReports(const ProjectSnapshot& snapshot) {
+  std::vector<ReportPair> pairs;
+  for (const Link& link : snapshot.links()) {
+    const auto fixed = snapshot.indexOf(link.fixed), moving = snapshot.indexOf(link.moving);
+    if (!fixed || !moving) continue;
+    pairs.push_back({*fixed, *moving, link.overlap, link.rms_m, link.correspondences, link.iterations,
+                     link.stop_reason, link.milliseconds, link.succeeded});
+  }
+  return pairs;
+}
+
+// The last accepted job of each operation, in the order in which they ran.
+std::vector<const JobRecord*> lastJobs(const ProjectSnapshot& snapshot) {
+  std::map<std::string, const JobRecord*> last;
+  for (const JobRecord& job : snapshot.jobs()) last[job.operation] = &job;
+  std::vector<const JobRecord*> jobs;
+  for (const JobRecord& job : snapshot.jobs())
+    if (last.at(job.operation) == &job) jobs.push_back(&job);
+  return jobs;
+}
+
+}  // namespace
+
+Result<TopViewInput> topViewOf(const ProjectSnapshot& snapshot, Stage stage, const std::string& title,
+                               const JobControl& control) {
+  if (snapshot.scans().empty())
+    return fail("the project has no scans to draw", snapshot.path().string(),
+                "import, simulate or capture some first");
+  TopViewInput input;
+  input.title = title;
+  input.world_from_scan = snapshot.filledPoses(stage);
+  std::size_t total = 0;
+  for (const ScanEntry& scan : snapshot.scans()) total += scan.valid_cells;
+  const std::size_t step = total / kMostPoints + 1;
+  for (std::size_t i = 0; i < snapshot.scans().size(); ++i) {
+    if (control.stopRequested()) return fail(kCancelled, "top view", "start again when you like");
+    auto scan = snapshot.scans()[i].scan();
+    if (!scan) return fail(scan.error());
+    const auto points = cellPoints(*scan->image, scan->geometry);
+    TopViewCloud cloud;
+    cloud.scan = i;
+    std::size_t counted = 0;
+    for (std::size_t cell = 0; cell < points.size(); ++cell)
+      if (scan->image->hasPoint(cell) && counted++ % step == 0)
+        cloud.points.push_back(input.world_from_scan[i] * points[cell]);
+    input.clouds.push_back(std::move(cloud));
+  }
+  return input;
+}
+
+ReportData reportOf(const ProjectSnapshot& snapshot, const std::string& survey_name) {
+  ReportData report;
+  report.survey = survey_name;
+  report.scan_count = snapshot.scans().size();
+  for (const ScanEntry& scan : snapshot.scans()) report.point_count += scan.valid_cells;
+  for (const Stage stage : snapshot.stages()) report.stages.push_back(stageReport(snapshot, stage));
+  report.pairs = pairReports(snapshot);
+  for (const JobRecord* job : lastJobs(snapshot)) {
+    for (const std::string& warning : job->warnings) report.warnings.push_back(warning);
+    const Operation* operation = operations().find(job->operation);
+    report.parameters.push_back({job->operation, job->preset, job->values,
+                                 operation ? operation->parameters() : std::vector<ParameterInfo>()});
+    report.program_version = job->program_version;
+    report.date = job->finished;
+  }
+  return report;
+}
+
+}  // namespace tiltmap

@@ -1,0 +1,214 @@
+#include "core/project/operations/register_operation.h"
+
+#include <atomic>
+#include <chrono>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/parallel.h"
+#include "core/project/operations/pair_list.h"
+#include "core/registration/register_pair.h"
+
+namespace tiltmap {
+
+namespace {
+
+struct RegisterSettings {
+  RegistrationSettings registration;
+  std::string pairs;
+  int threads = 0;
+};
+
+const ParameterTable<RegisterSettings>& registerTable() {
+  static const ParameterTable<RegisterSettings> table = [] {
+    ParameterTable<RegisterSettings> t("register");
+    t.text("pairs", &RegisterSettings::pairs,
+           "Pairs to register, as FIXED:MOVING,...; empty: every scan with the one before it",
+           "thesis 5.1: consecutive scans");
+    t.integer("threads", &RegisterSettings::threads, "", 0, 256,
+              "Threads to use, 0 for all cores; the result does not depend on it", "ours");
+    t.include(registrationParameters(), &RegisterSettings::registration);
+    return t;
+  }();
+  return table;
+}
+
+double millisecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Counts finished pieces over all threads, for progress.
+class Counter {
+ public:
+  Counter(const JobControl& control, std::size_t total) : control_(control), total_(total) {}
+  void finished(const std::string& what) {
+    const std::size_t done = ++done_;
+    control_.tell(static_cast<double>(done) / static_cast<double>(total_), what);
+  }
+
+ private:
+  const JobControl& control_;
+  std::size_t total_;
+  std::atomic<std::size_t> done_ = 0;
+};
+
+using PreparedByIndex = std::map<int, Result<PreparedScanPtr>>;
+
+// Each scan that a pair names, prepared once and shared; one matrix a thread in memory.
+Result<PreparedByIndex> prepareScans(const ProjectSnapshot& snapshot, const std::vector<IndexPair>& pairs,
+                                     const RegisterSettings& settings, Counter& counter,
+                                     const JobControl& control) {
+  PreparedByIndex prepared;
+  for (const auto& [fixed, moving] : pairs) {
+    prepared.emplace(fixed, PreparedScanPtr());
+    prepared.emplace(moving, PreparedScanPtr());
+  }
+  std::vector<PreparedByIndex::value_type*> slots;
+  for (auto& entry : prepared) slots.push_back(&entry);
+  parallelFor(slots.size(), settings.threads, [&](std::size_t i) {
+    if (control.stopRequested()) return;
+    auto& [index, slot] = *slots[i];
+    slot = snapshot.scans()[static_cast<std::size_t>(index)].scan().map(
+        [&](const Scan& scan) { return prepare(scan, settings.registration); });
+    counter.finished("preparing scan " + std::to_string(index));
+  });
+  if (control.stopRequested())
+    return fail(kCancelled, "register", "nothing was changed; start again when you like");
+  for (const auto& [index, slot] : prepared)
+    if (!slot) return fail(slot.error());
+  return prepared;
+}
+
+nlohmann::json pairJson(const IndexPair& pair, const PairResult& result, double milliseconds) {
+  const Eigen::Vector3d& t = result.fixed_from_moving.translation();
+  const Eigen::Quaterniond& q = result.fixed_from_moving.quaternion();
+  return {{"fixed", pair.first},
+          {"moving", pair.second},
+          {"milliseconds", milliseconds},
+          {"iterations", result.iterations},
+          {"correspondences", result.correspondences},
+          {"rms_m", result.rms_m},
+          {"overlap", result.overlap},
+          {"agreement", result.agreement},
+          {"stop_reason", stopReasonName(result.stop_reason)},
+          {"succeeded", result.succeeded()},
+          {"fixed_from_moving",
+           {{"translation_m", {t.x(), t.y(), t.z()}}, {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}}}};
+}
+
+Link linkOf(const ProjectSnapshot& snapshot, const IndexPair& pair, const PairResult& result,
+            double milliseconds) {
+  Link link;
+  link.fixed = snapshot.scans()[static_cast<std::size_t>(pair.first)].id;
+  link.moving = snapshot.scans()[static_cast<std::size_t>(pair.second)].id;
+  link.fixed_from_moving = result.fixed_from_moving;
+  link.iterations = result.iterations;
+  link.correspondences = static_cast<int>(result.correspondences);
+  link.rms_m = result.rms_m;
+  link.overlap = result.overlap;
+  link.milliseconds = milliseconds;
+  link.stop_reason = stopReasonName(result.stop_reason);
+  link.succeeded = result.succeeded();
+  if (result.succeeded()) link.information = result.information;
+  return link;
+}
+
+// The link that chains `index` to the scan before it: the one just found, else one the project already has.
+const Link* chainLink(const ProjectSnapshot& snapshot, const std::vector<Link>& found, std::size_t index) {
+  const ScanId fixed = snapshot.scans()[index - 1].id, moving = snapshot.scans()[index].id;
+  for (const Link& link : found)
+    if (link.fixed == fixed && link.moving == moving) return &link;
+  for (const Link& link : snapshot.links())
+    if (link.fixed == fixed && link.moving == moving && link.usable()) return &link;
+  return nullptr;
+}
+
+std::vector<std::pair<ScanId, Pose>> chainedPoses(const ProjectSnapshot& snapshot,
+                                                  const std::vector<Link>& found) {
+  std::vector<std::pair<ScanId, Pose>> poses;
+  for (std::size_t i = 0; i < snapshot.scans().size(); ++i) {
+    const ScanEntry& scan = snapshot.scans()[i];
+    if (i == 0) {
+      poses.emplace_back(scan.id, scan.odometry());
+      continue;
+    }
+    const Link* link = chainLink(snapshot, found, i);
+    const Pose by_odometry = snapshot.scans()[i - 1].odometry().inverse() * scan.odometry();
+    poses.emplace_back(
+        scan.id, poses.back().second * (link && link->usable() ? link->fixed_from_moving : by_odometry));
+  }
+  return poses;
+}
+
+class RegisterOperation : public SettingsOperation<RegisterSettings> {
+ public:
+  RegisterOperation() : SettingsOperation(registerTable()) {}
+  std::string title() const override { return "Register pairs"; }
+  std::string help() const override {
+    return "Finds the motion between pairs of scans from their range matrices, starting from the odometry, "
+           "and chains "
+           "the results into the stage `pairwise`.";
+  }
+
+ protected:
+  Status checkSettings(const ProjectSnapshot& snapshot, const RegisterSettings& settings) const override {
+    if (snapshot.scans().size() < 2)
+      return fail("registration needs two scans; the project has " + std::to_string(snapshot.scans().size()),
+                  snapshot.path().string(), "import, simulate or capture more scans first");
+    if (auto pairs = parsePairList(settings.pairs, static_cast<int>(snapshot.scans().size())); !pairs)
+      return fail(pairs.error());
+    return tiltmap::checkSettings(settings.registration);
+  }
+
+  Result<OperationResult> runSettings(const SnapshotPtr& snapshot, const RegisterSettings& settings,
+                                      const JobControl& control) const override {
+    const auto started = std::chrono::steady_clock::now();
+    auto pairs = parsePairList(settings.pairs, static_cast<int>(snapshot->scans().size()));
+    if (!pairs) return fail(pairs.error());
+    Counter counter(control, 2 * pairs->size() + 1);
+    auto prepared = prepareScans(*snapshot, *pairs, settings, counter, control);
+    if (!prepared) return fail(prepared.error());
+
+    std::vector<Result<PairResult>> results(pairs->size(), PairResult());
+    parallelFor(pairs->size(), settings.threads, [&](std::size_t i) {
+      const auto [fixed, moving] = (*pairs)[i];
+      const Pose start = snapshot->scans()[static_cast<std::size_t>(fixed)].odometry().inverse() *
+                         snapshot->scans()[static_cast<std::size_t>(moving)].odometry();
+      results[i] =
+          registerPair(*prepared->at(fixed), *prepared->at(moving), start, settings.registration, control);
+      counter.finished("registered " + std::to_string(moving) + " to " + std::to_string(fixed));
+    });
+
+    OperationResult outcome;
+    std::vector<Link> links;
+    nlohmann::json report = {{"pairs", nlohmann::json::array()}};
+    for (std::size_t i = 0; i < pairs->size(); ++i) {
+      if (!results[i]) return fail(results[i].error());
+      const PairResult& result = *results[i];
+      const auto [fixed, moving] = (*pairs)[i];
+      // Preparation is shared between pairs, but a pair's time counts from its two raw matrices.
+      const double milliseconds =
+          (*prepared->at(fixed))->milliseconds + (*prepared->at(moving))->milliseconds + result.milliseconds;
+      links.push_back(linkOf(*snapshot, (*pairs)[i], result, milliseconds));
+      report["pairs"].push_back(pairJson((*pairs)[i], result, milliseconds));
+      if (!result.succeeded())
+        outcome.warnings.push_back("scan " + std::to_string(moving) + " was not registered to scan " +
+                                   std::to_string(fixed) + " (" + stopReasonName(result.stop_reason) +
+                                   "): it keeps its odometry. " + stopReasonSentence(result.stop_reason));
+    }
+    report["milliseconds"] = millisecondsSince(started);
+    outcome.report_json = report.dump();
+    auto poses = chainedPoses(*snapshot, links);
+    outcome.edit = registerEdit(snapshot, std::move(links), std::move(poses));
+    return outcome;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> makeRegisterOperation() {
+  return std::make_unique<RegisterOperation>();
+}
+
+}  // namespace tiltmap
