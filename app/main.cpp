@@ -1,6 +1,3 @@
-#include <cstdio>
+#include "app/cli/command_line.h"
 
-int main() {
-  std::puts("tiltmap " TILTMAP_VERSION);
-  return 0;
-}
+int main(int argc, char** argv) { return tiltmap::cli::run(argc, argv); }

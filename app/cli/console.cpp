@@ -1,13 +1,12 @@
 #include "app/cli/console.h"
 
-#include <signal.h>
-#include <unistd.h>
-
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <signal.h>
+#include <unistd.h>
 
 namespace tiltmap::cli {
 
@@ -17,7 +16,9 @@ Console::Console(OutputFlags flags)
       colour_(terminal_ && std::getenv("NO_COLOR") == nullptr),
       started_(std::chrono::steady_clock::now()) {}
 
-Console::~Console() { endProgress(); }
+Console::~Console() {
+  endProgress();
+}
 
 void Console::print(const std::string& text) {
   endProgress();
@@ -27,7 +28,8 @@ void Console::print(const std::string& text) {
 void Console::printJson(const nlohmann::json& object) {
   endProgress();
   // File names need not be UTF-8; what is not becomes a replacement character instead of an exception.
-  if (flags_.json) std::cout << object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n" << std::flush;
+  if (flags_.json)
+    std::cout << object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n" << std::flush;
 }
 
 void Console::note(const std::string& text) {
@@ -44,8 +46,12 @@ void Console::warn(const std::string& text) {
   if (!flags_.quiet) std::cerr << (colour_ ? "\033[33mWarning:\033[0m " : "Warning: ") << text << "\n";
 }
 
-int Console::failed(const Error& error) { return report(error, kFailed); }
-int Console::wrongUsage(const Error& error) { return report(error, kWrongUsage); }
+int Console::failed(const Error& error) {
+  return report(error, kFailed);
+}
+int Console::wrongUsage(const Error& error) {
+  return report(error, kWrongUsage);
+}
 
 int Console::report(const Error& error, int code) {
   endProgress();
@@ -59,7 +65,8 @@ int Console::report(const Error& error, int code) {
 JobControl Console::job(std::stop_token stop) {
   JobControl control;
   control.stop = std::move(stop);
-  if (terminal_ && !flags_.quiet) control.report = [this](const Progress& progress) { showProgress(progress); };
+  if (terminal_ && !flags_.quiet)
+    control.report = [this](const Progress& progress) { showProgress(progress); };
   return control;
 }
 
@@ -72,8 +79,9 @@ void Console::showProgress(const Progress& progress) {
   if (progress.fraction >= 0.0) {
     constexpr int kWidth = 24;
     const int filled = static_cast<int>(std::lround(std::min(1.0, progress.fraction) * kWidth));
-    std::snprintf(bar.data(), bar.size(), "[%.*s%.*s] %3d%%  ", filled, "########################", kWidth - filled,
-                  "........................", static_cast<int>(std::lround(100.0 * std::min(1.0, progress.fraction))));
+    std::snprintf(bar.data(), bar.size(), "[%.*s%.*s] %3d%%  ", filled, "########################",
+                  kWidth - filled, "........................",
+                  static_cast<int>(std::lround(100.0 * std::min(1.0, progress.fraction))));
   }
   std::fprintf(stderr, "\r\033[K%s%s", bar.data(), progress.message.c_str());
   std::fflush(stderr);

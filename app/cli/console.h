@@ -1,4 +1,5 @@
-// How commands talk: results to standard output, everything else to standard error, one JSON object on request.
+// How commands talk: results to standard output, everything else to standard error, one JSON object on
+// request.
 #pragma once
 
 #include <chrono>
@@ -65,8 +66,8 @@ class Console {
 // Warnings as they stand in a JSON result: always an array.
 nlohmann::json warningsJson(const std::vector<std::string>& warnings);
 
-// Collects SIGINT and SIGTERM on a thread of its own and turns them into a stop request; a second one ends the
-// program at once (what the project file had accepted is on disk by then).
+// Collects SIGINT and SIGTERM on a thread of its own and turns them into a stop request; a second one ends
+// the program at once (what the project file had accepted is on disk by then).
 class StopOnSignal {
  public:
   StopOnSignal();

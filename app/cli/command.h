@@ -1,0 +1,62 @@
+// The shape of a command: it adds its words to the parser and says what to run.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "app/cli/console.h"
+#include "core/base/parameter.h"
+
+namespace tiltmap::cli {
+
+struct Context {
+  Console& console;
+  std::stop_token stop;
+
+  JobControl job() const { return console.job(stop); }
+};
+
+// Returns the exit code (console.h).
+using CommandBody = std::function<int(Context&)>;
+
+// What the parser leaves behind: the body of the command that was named.
+struct Chosen {
+  CommandBody body;
+};
+
+// Flags made from an operation's parameter descriptions: --name VALUE, with unit, range, default and help.
+class ParameterFlags {
+ public:
+  static std::shared_ptr<ParameterFlags> addTo(CLI::App& command, const std::vector<ParameterInfo>& infos);
+  // Only what was given on the command line.
+  Result<ParameterValues> values() const;
+
+ private:
+  std::vector<ParameterInfo> infos_;
+  std::vector<std::string> texts_;
+  std::vector<CLI::Option*> options_;
+};
+
+// "parameter name (unit), range, default": one line for lists and help.
+std::string parameterSummary(const ParameterInfo& info);
+
+// One function a command; each lives in the file of its name.
+void addNew(CLI::App& app, Chosen& chosen);
+void addSimulate(CLI::App& app, Chosen& chosen);
+void addImport(CLI::App& app, Chosen& chosen);
+void addInfo(CLI::App& app, Chosen& chosen);
+void addRegister(CLI::App& app, Chosen& chosen);
+void addPoses(CLI::App& app, Chosen& chosen);
+void addEvaluate(CLI::App& app, Chosen& chosen);
+void addExport(CLI::App& app, Chosen& chosen);
+void addParameters(CLI::App& app, Chosen& chosen);
+void addDemo(CLI::App& app, Chosen& chosen);
+void addHistory(CLI::App& app, Chosen& chosen);  // undo, redo, history
+
+}  // namespace tiltmap::cli

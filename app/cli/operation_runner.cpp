@@ -1,0 +1,63 @@
+#include "app/cli/operation_runner.h"
+
+#include "core/project/job.h"
+
+namespace tiltmap::cli {
+
+Result<OperationResult> runOperation(Context& context, Project& project, const std::string& operation,
+                                     const std::string& preset, const ParameterValues& values) {
+  auto found = operations().get(operation);
+  if (!found) return fail(found.error());
+  auto job = Job::start(**found, project.snapshot(), preset, values);
+  if (!job) return fail(job.error());
+  const JobControl control = context.job();
+  while (!(*job)->waitFor(std::chrono::milliseconds(40))) {
+    if (context.stop.stop_requested()) (*job)->cancel();
+    const Progress progress = (*job)->progress();
+    control.tell(progress.fraction, progress.message);
+  }
+  context.console.endProgress();
+  const auto& result = (*job)->result();
+  if (!result) {
+    if (result.error().what == kCancelled)
+      return fail("cancelled; the project is as it was", project.path().string(),
+                  "run the command again when you like");
+    return fail(result.error());
+  }
+  OperationResult outcome = *result;
+  if (auto change = (*job)->accept(project); !change) return fail(change.error());
+  return outcome;
+}
+
+int operationCommand(Context& context, const std::string& project_path, const std::string& operation,
+                     const std::string& preset, const ParameterValues& values,
+                     const std::function<std::string(const nlohmann::json&)>& text, Access access) {
+  auto project = Project::open(project_path, access);
+  if (!project) return context.console.failed(project.error());
+  auto outcome = runOperation(context, **project, operation, preset, values);
+  if (!outcome) return context.console.failed(outcome.error());
+  for (const std::string& warning : outcome->warnings) context.console.warn(warning);
+  nlohmann::json report =
+      outcome->report_json.empty() ? nlohmann::json::object() : nlohmann::json::parse(outcome->report_json);
+  report["warnings"] = warningsJson(outcome->warnings);
+  context.console.printJson(report);
+  context.console.print(text(report));
+  return kDone;
+}
+
+Result<SnapshotPtr> readProject(const std::string& path) {
+  return Project::open(path, Access::ReadOnly).map([](const std::unique_ptr<Project>& project) {
+    return project->snapshot();
+  });
+}
+
+Result<Stage> stageOrLatest(const ProjectSnapshot& snapshot, const std::string& name) {
+  if (name.empty()) return snapshot.latestStage();
+  auto stage = parseStage(name);
+  if (stage && !snapshot.hasStage(*stage))
+    return fail("the project has no poses of stage " + name, snapshot.path().string(),
+                "run the operation that makes it first, or choose another stage (`tiltmap info` lists them)");
+  return stage;
+}
+
+}  // namespace tiltmap::cli

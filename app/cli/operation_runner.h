@@ -1,0 +1,29 @@
+// Running an operation of the project from a command: a job, its progress, Ctrl-C, and accepting the result.
+#pragma once
+
+#include <string>
+
+#include "app/cli/command.h"
+#include "core/project/operation.h"
+#include "core/project/project.h"
+
+namespace tiltmap::cli {
+
+// The operation's result once the project has accepted it. Warnings are in the result, not yet shown.
+Result<OperationResult> runOperation(Context& context, Project& project, const std::string& operation,
+                                     const std::string& preset, const ParameterValues& values);
+
+// The same as a whole command: opens the project, runs, shows warnings, prints `text(report)` or the report
+// as JSON with its warnings, and returns the exit code.
+int operationCommand(Context& context, const std::string& project_path, const std::string& operation,
+                     const std::string& preset, const ParameterValues& values,
+                     const std::function<std::string(const nlohmann::json&)>& text,
+                     Access access = Access::ReadWrite);
+
+// A reading command's snapshot.
+Result<SnapshotPtr> readProject(const std::string& path);
+
+// The stage named, or the latest there is; refuses one that the project has no poses of.
+Result<Stage> stageOrLatest(const ProjectSnapshot& snapshot, const std::string& name);
+
+}  // namespace tiltmap::cli
