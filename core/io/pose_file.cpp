@@ -86,7 +86,7 @@ Result<IndexedPoses> parsePosesTum(std::string_view bytes, const std::string& pa
 }
 
 std::string posesTumText(const IndexedPoses& world_from_scan) {
-  std::string text = "# index x y z qx qy qz qw (metres, world_from_scan)\n";
+  std::string text;
   for (const auto& [index, pose] : world_from_scan) {
     checkFinite(pose);
     const Eigen::Vector3d& t = pose.translation();
