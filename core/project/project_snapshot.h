@@ -35,7 +35,7 @@ struct SurveyInfo {
   std::string date;  // as entered; ISO 8601 suggested
   // Where the world (the frame of the first scan) is in the frame that imported poses came in; nothing where they
   // came with none.
-  std::optional<Pose> site_from_world;
+  std::optional<Pose> site_from_world = std::nullopt;
 
   bool operator==(const SurveyInfo&) const = default;
 };

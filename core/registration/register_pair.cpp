@@ -20,11 +20,11 @@ tl::unexpected<Error> cancelled() {
   return fail(kCancelled, "register", "start it again to register this pair");
 }
 
-Result<PairResult> run(const PreparedScanPtr& fixed, const PreparedScanPtr& moving, const Pose& start,
-                       const RegistrationSettings& settings, const JobControl& control,
-                       Clock::time_point begin) {
+Result<PairResult> runFrom(const PreparedScanPtr& fixed, const PreparedScanPtr& moving, const Pose& start,
+                           const RegistrationSettings& settings, const JobControl& control) {
   Registration registration(fixed, moving, start, settings);
   PairResult result;
+  result.start = start;
   while (!registration.done()) {
     result.steps.push_back(registration.step(control.stop));
     control.tell(static_cast<double>(result.steps.size()) / settings.max_iterations, "registering");
@@ -39,13 +39,39 @@ Result<PairResult> run(const PreparedScanPtr& fixed, const PreparedScanPtr& movi
   result.agreement = registration.agreement();
   result.information = registration.information();
   result.condition = registration.condition();
-  result.warnings = fixed->warnings;
-  result.warnings.insert(result.warnings.end(), moving->warnings.begin(), moving->warnings.end());
-  if (result.stop_reason != StopReason::Converged && result.stop_reason != StopReason::TinyMotion)
-    result.warnings.push_back(stopReasonName(result.stop_reason) + ": " +
-                              stopReasonSentence(result.stop_reason));
-  result.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
   return result;
+}
+
+// How well a result fits; nothing that failed is as good as anything that did not.
+double fit(const PairResult& result) {
+  return result.succeeded() ? result.overlap * result.agreement : -1.0;
+}
+
+Result<PairResult> run(const PreparedScanPtr& fixed, const PreparedScanPtr& moving, const Pose& start,
+                       const RegistrationSettings& settings, const JobControl& control,
+                       Clock::time_point begin) {
+  auto best = runFrom(fixed, moving, start, settings, control);
+  if (!best) return best;
+  int retries = 0;
+  if (best->agreement < settings.retry_agreement && !fixed->elements.empty() && !moving->elements.empty()) {
+    for (const double turns : {1.0, -1.0, 2.0, -2.0}) {
+      const Pose other = start * Pose::planar(0.0, 0.0, turns * settings.retry_heading_rad);
+      auto result = runFrom(fixed, moving, other, settings, control);
+      if (!result) return result;
+      ++retries;
+      // Another heading must leave no doubt of its own, or two strange scans would be talked into a fit.
+      if (result->agreement >= settings.retry_agreement && fit(*result) > fit(*best))
+        best = std::move(result);
+    }
+  }
+  best->retries = retries;
+  best->warnings = fixed->warnings;
+  best->warnings.insert(best->warnings.end(), moving->warnings.begin(), moving->warnings.end());
+  if (best->stop_reason != StopReason::Converged && best->stop_reason != StopReason::TinyMotion)
+    best->warnings.push_back(stopReasonName(best->stop_reason) + ": " +
+                             stopReasonSentence(best->stop_reason));
+  best->milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+  return best;
 }
 
 }  // namespace

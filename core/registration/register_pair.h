@@ -13,6 +13,9 @@ namespace tiltmap {
 struct PairResult {
   // Carries points of the moving scan into the frame of the fixed one. Only to be used where succeeded().
   Pose fixed_from_moving;
+  Pose
+      start;  // fixed_from_moving that the registration began at: the one given, or another heading (retries)
+  int retries = 0;  // other headings that were tried, because the first result agreed too little
   int iterations = 0;
   std::size_t correspondences = 0;  // pairs kept in the last step
   // Root mean square of the kept pairs' residuals in the last step (with a loss: weighted by it): along the
@@ -31,6 +34,10 @@ struct PairResult {
   bool succeeded() const { return isSuccess(stop_reason); }
 };
 
+// A result that agrees less than retry_agreement is doubted: the pair is registered again from other headings
+// of the moving scan. One of them is taken where it is not doubted itself and fits more (overlap times
+// agreement).
+//
 // From the raw matrices. An Error where the settings are refused, a start is not finite, or the job was
 // cancelled; a registration that ran and found nothing usable is a PairResult whose stop_reason says so.
 Result<PairResult> registerPair(const Scan& fixed, const Scan& moving, const Pose& start_fixed_from_moving,

@@ -100,6 +100,10 @@ struct RegistrationSettings : RejectionSettings {
   double min_eigenvalue = 3e-4;    // of the normalised information; below: degenerate
   double max_correction_m = 15.0;  // further from the start: diverged
   double max_correction_rad = 1.5707963267948966;
+
+  // Trying again (registerPair): a result that agrees less is doubted, and other headings are started from.
+  double retry_agreement = 0.6;                   // 0: never
+  double retry_heading_rad = 0.17453292519943295;  // 10 deg; once and twice this to either side
 };
 
 // Combinations that make no sense are refused with a message; ranges are the table's business.
