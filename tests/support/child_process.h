@@ -3,9 +3,12 @@
 
 #include <csignal>
 #include <exception>
+#include <filesystem>
 #include <functional>
+#include <linux/capability.h>
 #include <stdexcept>
 #include <string>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -77,10 +80,30 @@ class ChildProcess {
   int read_end_ = -1;
 };
 
-// Gives up the rights of root, before which no folder is read-only.
-inline void becomeNobody() {
+// Root's capabilities given up, but not the user: no folder is read-only before them. The owner's permissions
+// then count, also where the way to the folder is root's alone.
+inline void giveUpRootsRights() {
   if (::geteuid() != 0) return;
-  if (::setgid(65534) != 0 || ::setuid(65534) != 0) throw std::runtime_error("cannot give up root's rights");
+  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+  __user_cap_data_struct none[_LINUX_CAPABILITY_U32S_3]{};
+  if (::syscall(SYS_capset, &header, none) != 0) throw std::runtime_error("cannot give up root's rights");
+}
+
+inline void becomeNobody() {
+  if (::setgid(65534) != 0 || ::setuid(65534) != 0) throw std::runtime_error("cannot become another user");
+}
+
+// Whether there is another user to become, and the way to the folder is open to that one.
+inline bool nobodyReaches(const std::filesystem::path& folder) {
+  if (::geteuid() != 0) return false;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (::setgid(65534) != 0 || ::setuid(65534) != 0) ::_exit(1);
+    ::_exit(::access(folder.c_str(), X_OK) == 0 ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 }  // namespace tiltmap::test
