@@ -19,7 +19,7 @@ endif()
 add_library(tiltmap_build_flags INTERFACE)
 target_compile_options(tiltmap_build_flags INTERFACE -Wall -Wextra -Wconversion -Wshadow
   # Eigen and the standard library trip this one inside inlined code of theirs.
-  -Wno-maybe-uninitialized
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
   # g++ 12 invents overlaps in "text" + std::to_string(n) (GCC bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 if(TILTMAP_WERROR)
