@@ -135,6 +135,19 @@ class ParameterTable {
     presets_.push_back({{std::move(name), std::move(help)}, std::move(settings)});
   }
 
+  // Every parameter of another table, which must outlive this one; its settings are a member of these. Presets
+  // stay behind: what they mean here is for the caller to say.
+  template <class Inner>
+  void includeParameters(const ParameterTable<Inner>& inner, Inner Settings::* member) {
+    for (const ParameterInfo& info : inner.infos())
+      add(
+          info,
+          [&inner, name = info.name, member](const Settings& s) { return inner.values(s.*member).at(name); },
+          [&inner, name = info.name, member](Settings& s, const ParameterValue& v) {
+            static_cast<void>(inner.apply({{name, v}}, s.*member));  // checked by the caller against `info`
+          });
+  }
+
   const std::string& operation() const { return operation_; }
   const std::vector<ParameterInfo>& infos() const { return infos_; }
   std::vector<ParameterPreset> presets() const {

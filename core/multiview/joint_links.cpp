@@ -1,0 +1,118 @@
+#include "core/multiview/joint_links.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "core/base/parallel.h"
+#include "core/registration/pair_choice.h"
+
+namespace tiltmap {
+
+namespace {
+
+double medianOf(std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+// h and b without the directions that the surfaces leave free: noise there must not pull.
+void takeStrongDirections(const LinearSystem& system, const Conditioning& condition, JointLink& link) {
+  link.weak = condition.weak;
+  if (condition.weak == 0) {
+    link.h = system.h;
+    link.b = system.b;
+    return;
+  }
+  if (condition.weak == 6) return;
+  // Columns of `inverse`^T are the directions' duals: h = sum over k of value_k dual_k dual_k^T.
+  const Matrix6d inverse = condition.directions.inverse();
+  for (int k = condition.weak; k < 6; ++k) {
+    const Vector6d dual = inverse.row(k).transpose();
+    link.h += condition.eigenvalues[k] * system.plane_weight * dual * dual.transpose();
+    link.b += condition.directions.col(k).dot(system.b) * dual;
+  }
+}
+
+JointLink measured(const std::pair<int, int>& candidate, std::span<const PreparedScanPtr> scans,
+                   const Samples& samples, std::span<const Pose> world_from_scan,
+                   const RegistrationSettings& settings, double loss_scale_m) {
+  const auto first = static_cast<std::size_t>(candidate.first);
+  const auto second = static_cast<std::size_t>(candidate.second);
+  JointLink link;
+  link.fixed = candidate.first;
+  link.moving = candidate.second;
+  link.fixed_from_moving = world_from_scan[first].inverse() * world_from_scan[second];
+
+  const bool both = settings.both_directions && loss_scale_m <= settings.both_directions_below_m;
+  RejectionState rejection;
+  rejection.distance_bound_m = settings.max_distance_m;
+  std::vector<Correspondence> pairs;
+  const RejectionCounts counts = findPairs(*scans[first], *scans[second], link.fixed_from_moving,
+                                           samples[first], samples[second], both, settings, rejection, pairs);
+  link.pairs = counts[static_cast<std::size_t>(RejectReason::None)];
+  if (link.pairs < static_cast<std::size_t>(settings.min_pairs)) return link;
+
+  const Metric metric = metricOf(settings.motion, settings.reduction == Reduction::Patches);
+  LinearSystem system;
+  std::vector<double> residuals;
+  linearise(metric, scans[first]->elements, scans[second]->elements, Pose(), link.fixed_from_moving, pairs,
+            settings, loss_scale_m, system, &residuals);
+  link.loss_weight = system.loss_weight;
+  const double square = system.loss_weight > 0.0 ? system.loss_square_m2 / system.loss_weight : 0.0;
+  link.rms_m = std::sqrt(square);
+  link.median_m = medianOf(residuals);
+  std::size_t common = 0;
+  for (const Correspondence& pair : pairs)
+    if (!pair.from_fixed && pair.reason != RejectReason::NoPartner) ++common;
+  link.overlap = common > 0 ? static_cast<double>(system.agreeing_moving) / static_cast<double>(common) : 0.0;
+  link.agreement =
+      static_cast<double>(system.agreeing) / static_cast<double>(std::max<std::size_t>(system.pairs, 1));
+  takeStrongDirections(system, conditioningOf(system, settings.min_eigenvalue), link);
+  if (metric != Metric::PatchToPatch) {
+    // Unit weights become an information through the residuals' own variance.
+    const double variance = std::max(square, settings.loss_minimum_m * settings.loss_minimum_m);
+    link.h /= variance;
+    link.b /= variance;
+  }
+  link.used =
+      link.weak < 6 && link.overlap >= settings.min_overlap && link.agreement >= settings.min_agreement;
+  return link;
+}
+
+}  // namespace
+
+std::vector<JointLink> measureLinks(std::span<const std::pair<int, int>> candidates,
+                                    std::span<const PreparedScanPtr> scans, const Samples& samples,
+                                    std::span<const Pose> world_from_scan,
+                                    const RegistrationSettings& settings, double loss_scale_m, int threads,
+                                    const std::stop_token& stop) {
+  std::vector<JointLink> links(candidates.size());
+  parallelFor(candidates.size(), threads, [&](std::size_t k) {
+    if (stop.stop_requested()) return;
+    links[k] = measured(candidates[k], scans, samples, world_from_scan, settings, loss_scale_m);
+  });
+  return links;
+}
+
+double medianResidual(std::span<const JointLink> links) {
+  std::vector<std::pair<double, std::size_t>> medians;
+  std::size_t total = 0;
+  for (const JointLink& link : links) {
+    if (!link.used) continue;
+    medians.emplace_back(link.median_m, link.pairs);
+    total += link.pairs;
+  }
+  std::ranges::sort(medians);
+  std::size_t passed = 0;
+  for (const auto& [median, pairs] : medians) {
+    passed += pairs;
+    if (2 * passed >= total) return median;
+  }
+  return 0.0;
+}
+
+}  // namespace tiltmap

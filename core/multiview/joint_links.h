@@ -1,0 +1,45 @@
+// The surface pairs of many pairs of scans, measured and linearised at the present poses.
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/multiview/relaxation.h"
+#include "core/registration/metric.h"
+
+namespace tiltmap {
+
+// One pair of scans at one step.
+struct JointLink {
+  int fixed = 0;  // the lower index
+  int moving = 0;
+  Pose fixed_from_moving;
+  std::size_t pairs = 0;
+  double overlap = 0.0;    // as Registration::overlap
+  double agreement = 0.0;  // as Registration::agreement
+  double rms_m = 0.0;
+  double loss_weight = 0.0;
+  double median_m = 0.0;  // of the kept pairs' residuals
+  int weak = 6;           // directions the surfaces leave free (Conditioning)
+  // Information form of the step, over the directions that are not weak; h in rad^-2 and m^-2.
+  Matrix6d h = Matrix6d::Zero();
+  Vector6d b = Vector6d::Zero();
+  bool used = false;  // enough pairs, overlap and agreement
+};
+
+// Elements of each scan that are paired.
+using Samples = std::vector<std::vector<std::uint32_t>>;
+
+// Finds the pairs of elements of each candidate at the poses and linearises them with the loss scale. Shared
+// among the threads, each link in its own slot: the same bits for any number of them.
+std::vector<JointLink> measureLinks(std::span<const std::pair<int, int>> candidates,
+                                    std::span<const PreparedScanPtr> scans, const Samples& samples,
+                                    std::span<const Pose> world_from_scan,
+                                    const RegistrationSettings& settings, double loss_scale_m, int threads,
+                                    const std::stop_token& stop);
+
+// The median residual over the used links, each by its number of pairs; 0 where none is used.
+double medianResidual(std::span<const JointLink> links);
+
+}  // namespace tiltmap

@@ -1,0 +1,135 @@
+#include "core/multiview/pose_system.h"
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+namespace tiltmap {
+
+namespace {
+
+// Carries a small motion on the right of the pose to the left of it: T Exp(xi) = Exp(Ad xi) T.
+Matrix6d adjoint(const Pose& pose) {
+  const Eigen::Matrix3d rotation = pose.rotation();
+  const Eigen::Vector3d& t = pose.translation();
+  Eigen::Matrix3d cross;
+  cross << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
+  Matrix6d ad = Matrix6d::Zero();
+  ad.topLeftCorner<3, 3>() = rotation;
+  ad.bottomLeftCorner<3, 3>() = cross * rotation;
+  ad.bottomRightCorner<3, 3>() = rotation;
+  return ad;
+}
+
+class Assembly {
+ public:
+  explicit Assembly(std::size_t unknowns)
+      : right_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * unknowns))) {}
+
+  // Only the lower triangle is kept.
+  void add(int row, int column, const Matrix6d& block) {
+    for (int c = 0; c < 6; ++c)
+      for (int r = row == column ? c : 0; r < 6; ++r)
+        triplets_.emplace_back(6 * row + r, 6 * column + c, block(r, c));
+  }
+  void addRight(int row, const Vector6d& part) { right_.segment<6>(6 * row) += part; }
+  Eigen::SparseMatrix<double> matrix() const {
+    Eigen::SparseMatrix<double> result(right_.size(), right_.size());
+    result.setFromTriplets(triplets_.begin(), triplets_.end());
+    return result;
+  }
+  const Eigen::VectorXd& right() const { return right_; }
+
+ private:
+  std::vector<Eigen::Triplet<double>> triplets_;
+  Eigen::VectorXd right_;
+};
+
+void addTerm(const PairTerm& term, int fixed, int moving, Assembly& assembly) {
+  const Matrix6d ad = adjoint(term.fixed_from_moving);
+  const Matrix6d h_ad = term.h * ad;
+  if (fixed >= 0) {
+    assembly.add(fixed, fixed, term.h);
+    assembly.addRight(fixed, -term.b);
+  }
+  if (moving >= 0) {
+    assembly.add(moving, moving, ad.transpose() * h_ad);
+    assembly.addRight(moving, ad.transpose() * term.b);
+  }
+  if (fixed < 0 || moving < 0) return;
+  if (fixed > moving)
+    assembly.add(fixed, moving, -h_ad);
+  else
+    assembly.add(moving, fixed, -h_ad.transpose());
+}
+
+}  // namespace
+
+PairTerm measuredPoseTerm(int fixed, int moving, const Pose& fixed_from_moving,
+                          const Pose& measured_fixed_from_moving, const Matrix6d& information) {
+  PairTerm term;
+  term.fixed = fixed;
+  term.moving = moving;
+  term.fixed_from_moving = fixed_from_moving;
+  // measured.moved(off) is the present pose, so d = -off would bring it there.
+  const Pose off = fixed_from_moving * measured_fixed_from_moving.inverse();
+  Vector6d residual;
+  residual << rotationLog(off.quaternion()), off.translation();
+  term.h = information;
+  term.b = information * residual;
+  return term;
+}
+
+Result<std::vector<Vector6d>> solvePoses(std::size_t count, const std::vector<char>& held,
+                                         const std::vector<PairTerm>& terms, double damping) {
+  std::vector<int> unknown(count, -1);
+  int unknowns = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    if (!held[i]) unknown[i] = unknowns++;
+  std::vector<Vector6d> motions(count, Vector6d::Zero());
+  if (unknowns == 0) return motions;
+
+  Assembly assembly(static_cast<std::size_t>(unknowns));
+  for (int i = 0; i < unknowns; ++i) assembly.add(i, i, damping * Matrix6d::Identity());
+  for (const PairTerm& term : terms)
+    addTerm(term, unknown[static_cast<std::size_t>(term.fixed)],
+            unknown[static_cast<std::size_t>(term.moving)], assembly);
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(assembly.matrix());
+  const auto refuse = [] {
+    return fail("the joint equations could not be solved", "relax",
+                "look for a link or a start pose that is far off, and disable or mend it");
+  };
+  if (solver.info() != Eigen::Success) return refuse();
+  const Eigen::VectorXd solution = solver.solve(-assembly.right());
+  if (!solution.allFinite()) return refuse();
+  for (std::size_t i = 0; i < count; ++i)
+    if (unknown[i] >= 0) motions[i] = solution.segment<6>(6 * unknown[i]);
+  return motions;
+}
+
+std::vector<char> tiedToHeld(std::size_t count, const std::vector<char>& held,
+                             const std::vector<PairTerm>& terms) {
+  std::vector<std::vector<int>> ties(count);
+  for (const PairTerm& term : terms) {
+    ties[static_cast<std::size_t>(term.fixed)].push_back(term.moving);
+    ties[static_cast<std::size_t>(term.moving)].push_back(term.fixed);
+  }
+  std::vector<char> tied(count, 0);
+  std::vector<int> open;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!held[i]) continue;
+    tied[i] = 1;
+    open.push_back(static_cast<int>(i));
+  }
+  while (!open.empty()) {
+    const int at = open.back();
+    open.pop_back();
+    for (const int next : ties[static_cast<std::size_t>(at)]) {
+      if (tied[static_cast<std::size_t>(next)]) continue;
+      tied[static_cast<std::size_t>(next)] = 1;
+      open.push_back(next);
+    }
+  }
+  return tied;
+}
+
+}  // namespace tiltmap
