@@ -37,15 +37,16 @@ void takeStrongDirections(const LinearSystem& system, const Conditioning& condit
   }
 }
 
-JointLink measured(const std::pair<int, int>& candidate, std::span<const PreparedScanPtr> scans,
-                   const Samples& samples, std::span<const Pose> world_from_scan,
-                   const RegistrationSettings& settings, double loss_scale_m) {
-  const auto first = static_cast<std::size_t>(candidate.first);
-  const auto second = static_cast<std::size_t>(candidate.second);
+}  // namespace
+
+JointLink measureLink(int fixed, int moving, const Pose& fixed_from_moving,
+                      std::span<const PreparedScanPtr> scans, const Samples& samples,
+                      const RegistrationSettings& settings, double loss_scale_m) {
+  const auto first = static_cast<std::size_t>(fixed), second = static_cast<std::size_t>(moving);
   JointLink link;
-  link.fixed = candidate.first;
-  link.moving = candidate.second;
-  link.fixed_from_moving = world_from_scan[first].inverse() * world_from_scan[second];
+  link.fixed = fixed;
+  link.moving = moving;
+  link.fixed_from_moving = fixed_from_moving;
 
   const bool both = settings.both_directions && loss_scale_m <= settings.both_directions_below_m;
   RejectionState rejection;
@@ -83,8 +84,6 @@ JointLink measured(const std::pair<int, int>& candidate, std::span<const Prepare
   return link;
 }
 
-}  // namespace
-
 std::vector<JointLink> measureLinks(std::span<const std::pair<int, int>> candidates,
                                     std::span<const PreparedScanPtr> scans, const Samples& samples,
                                     std::span<const Pose> world_from_scan,
@@ -93,7 +92,10 @@ std::vector<JointLink> measureLinks(std::span<const std::pair<int, int>> candida
   std::vector<JointLink> links(candidates.size());
   parallelFor(candidates.size(), threads, [&](std::size_t k) {
     if (stop.stop_requested()) return;
-    links[k] = measured(candidates[k], scans, samples, world_from_scan, settings, loss_scale_m);
+    const auto [fixed, moving] = candidates[k];
+    const Pose relative = world_from_scan[static_cast<std::size_t>(fixed)].inverse() *
+                          world_from_scan[static_cast<std::size_t>(moving)];
+    links[k] = measureLink(fixed, moving, relative, scans, samples, settings, loss_scale_m);
   });
   return links;
 }

@@ -31,6 +31,11 @@ struct JointLink {
 // Elements of each scan that are paired.
 using Samples = std::vector<std::vector<std::uint32_t>>;
 
+// One pair of scans at a relative pose.
+JointLink measureLink(int fixed, int moving, const Pose& fixed_from_moving,
+                      std::span<const PreparedScanPtr> scans, const Samples& samples,
+                      const RegistrationSettings& settings, double loss_scale_m);
+
 // Finds the pairs of elements of each candidate at the poses and linearises them with the loss scale. Shared
 // among the threads, each link in its own slot: the same bits for any number of them.
 std::vector<JointLink> measureLinks(std::span<const std::pair<int, int>> candidates,

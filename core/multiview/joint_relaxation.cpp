@@ -1,13 +1,24 @@
-// All overlapping pairs of scans in one least-squares problem: Gauss-Newton over the patch pairs of every
-// link, associations renewed each step, the loss annealed as in a single registration.
+// All overlapping pairs of scans in one least-squares problem, in two stages.
+//
+// Closing: pairs whose surfaces do not fit yet at the present poses (the two ends of a loop, whose errors
+// have added up) are registered by themselves, verified, and pull as measured poses; the others pull by their
+// surfaces. Starting the joint problem at a loss scale wide enough for such errors instead lets wrong pairs
+// of surfaces bend what fitted before.
+//
+// Settling: Gauss-Newton over the patch pairs of every link, associations renewed each step, the loss scale
+// narrowed to the data's own.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
+#include "core/base/parallel.h"
 #include "core/multiview/joint_links.h"
+#include "core/multiview/link_counter.h"
 #include "core/multiview/overlap_candidates.h"
 #include "core/multiview/pose_system.h"
 #include "core/multiview/relaxation_engine.h"
+#include "core/registration/registration.h"
 #include "core/registration/sampling.h"
 
 namespace tiltmap {
@@ -18,6 +29,17 @@ namespace {
 constexpr double kDamping = 1.0;
 // As a single registration: the data's own scale is taken this often after the annealing, then kept.
 constexpr int kOwnScaleSteps = 3;
+constexpr double kNarrowBelow_m = 0.005;
+constexpr int kWaitAtMost = 25;
+constexpr int kClosingRounds = 8;
+constexpr int kInnerSteps = 20;
+constexpr int kAttempts = 3;          // at registering one pair by itself
+constexpr double kTryAgain_m = 0.05;  // once it has moved so far since the last attempt
+constexpr double kTryAgain_rad = 0.5 * kDegree;
+constexpr int kLoopLinks = 4;          // as many links or more between its ends make a loop
+constexpr double kLinkError_m = 0.05;  // what each link between may have added to its error
+constexpr double kLinkError_rad = 0.3 * kDegree;
+constexpr double kTurnArm_m = 10.0;  // a turn counts as the shift it makes at this distance
 
 std::string namesOf(const std::vector<int>& scans) {
   std::string text;
@@ -31,9 +53,7 @@ class JointRelaxation : public RelaxationEngine {
       : RelaxationEngine(std::move(input), settings, threads) {
     const RegistrationSettings& r = settings_.registration;
     for (const PreparedScanPtr& scan : input_.scans) samples_.push_back(sampledElements(scan->elements, r));
-    scale_m_ = r.loss == Loss::Annealed       ? r.loss_start_m
-               : r.loss == Loss::GemanMcClure ? r.loss_scale_m
-                                              : 0.0;
+    scale_m_ = r.loss == Loss::Annealed ? r.loss_end_m : r.loss == Loss::GemanMcClure ? r.loss_scale_m : 0.0;
     own_scale_steps_left_ = r.loss == Loss::Annealed ? kOwnScaleSteps : 0;
     tied_.assign(poses_.size(), 0);
   }
@@ -44,6 +64,7 @@ class JointRelaxation : public RelaxationEngine {
 
   void step(RelaxationStep& report, const std::stop_token& stop) override {
     if (stop.stop_requested()) return cancel(report);
+    if (closing_) return close(report, stop);
     const bool settling = own_scale_steps_left_ == 0;
     if (!settling || candidates_.empty()) findCandidates(report);
     std::vector<JointLink> links = measureLinks(candidates_, input_.scans, samples_, poses_,
@@ -51,7 +72,7 @@ class JointRelaxation : public RelaxationEngine {
     if (stop.stop_requested()) return cancel(report);
     if (settling) keepChoice(links);
     links_ = std::move(links);
-    solve(report, settling);
+    settle(report, settling);
   }
 
   std::vector<int> unlinked() const override {
@@ -80,6 +101,121 @@ class JointRelaxation : public RelaxationEngine {
   }
 
  private:
+  // A pair registered by itself, from the poses it had then.
+  struct Attempt {
+    int count = 0;
+    int links_between = 0;
+    Pose start;
+    bool succeeded = false;
+    std::size_t pairs = 0;
+    double rms_m = 0.0;
+    StopReason reason = StopReason::TooFewPairs;
+    JointLink found;  // at the pose found
+  };
+
+  void close(RelaxationStep& report, const std::stop_token& stop) {
+    findCandidates(report);
+    std::vector<JointLink> links = measureLinks(candidates_, input_.scans, samples_, poses_,
+                                                settings_.registration, scale_m_, threads_, stop);
+    std::map<std::pair<int, int>, Attempt> attempts = attempts_;
+    registerMisfits(links, attempts, report, stop);
+    if (stop.stop_requested()) {
+      report.events.clear();
+      return cancel(report);
+    }
+    links_ = std::move(links);
+    attempts_ = std::move(attempts);
+    // Large motions are not linear: the same quadratic forms are carried along to where the poses go.
+    RelaxationEvent solved;
+    std::size_t misfits = 0;
+    for (int i = 0; i < kInnerSteps; ++i) {
+      std::vector<PairTerm> ties = terms();
+      const std::size_t by_surface = ties.size();
+      addMeasured(ties);
+      misfits = ties.size() - by_surface;
+      RelaxationEvent inner;
+      if (!solve(ties, inner)) return end(report);
+      const double largest = std::max(inner.translation_m, inner.rotation_rad * kTurnArm_m);
+      inner.translation_m = std::max(inner.translation_m, solved.translation_m);
+      inner.rotation_rad = std::max(inner.rotation_rad, solved.rotation_rad);
+      solved = inner;
+      if (largest < 0.1 * settings_.registration.loss_minimum_m) break;
+    }
+    report.events.push_back(solved);
+    ++rounds_;
+    report.fraction = 0.5 * rounds_ / (rounds_ + 2.0);
+    const bool at_rest = solved.translation_m < settings_.registration.loss_minimum_m &&
+                         solved.rotation_rad * kTurnArm_m < settings_.registration.loss_minimum_m;
+    closing_ = misfits > 0 && !at_rest && rounds_ < kClosingRounds;
+  }
+
+  void registerMisfits(const std::vector<JointLink>& links, std::map<std::pair<int, int>, Attempt>& attempts,
+                       RelaxationStep& report, const std::stop_token& stop) const {
+    std::vector<Attempt*> todo;
+    std::vector<const JointLink*> of;
+    const LinkCounter counter(poses_.size(), links);
+    for (const JointLink& link : links) {
+      if (link.used) continue;
+      const int between = counter.linksBetween(link.fixed, link.moving);
+      if (between < kLoopLinks) continue;
+      Attempt& attempt = attempts[{link.fixed, link.moving}];
+      const PoseDifference since = difference(attempt.start, link.fixed_from_moving);
+      const bool anew =
+          attempt.count == 0 ||
+          (!attempt.succeeded && (since.translation_m > kTryAgain_m || since.rotation_rad > kTryAgain_rad));
+      if (!anew || attempt.count >= kAttempts) continue;
+      todo.push_back(&attempt);
+      of.push_back(&link);
+    }
+    parallelFor(todo.size(), threads_, [&](std::size_t k) { registerByItself(*of[k], *todo[k], stop); });
+    for (std::size_t k = 0; k < todo.size(); ++k) {
+      RelaxationEvent event;
+      event.kind = RelaxationEventKind::Aligned;
+      event.scan = of[k]->moving;
+      event.other = of[k]->fixed;
+      event.pairs = todo[k]->pairs;
+      event.rms_m = todo[k]->rms_m;
+      event.text = stopReasonName(todo[k]->reason);
+      report.events.push_back(event);
+    }
+  }
+
+  void registerByItself(const JointLink& link, Attempt& attempt, const std::stop_token& stop) const {
+    Registration registration(scanPtr(link.fixed), scanPtr(link.moving), link.fixed_from_moving,
+                              settings_.registration);
+    while (!registration.done()) registration.step(stop);
+    ++attempt.count;
+    attempt.start = link.fixed_from_moving;
+    attempt.pairs = registration.keptPairs();
+    attempt.rms_m = registration.rms();
+    attempt.reason = *registration.stopReason();
+    attempt.succeeded = false;
+    if (!isSuccess(attempt.reason)) return;
+    attempt.found = measureLink(link.fixed, link.moving, registration.fixedFromMoving(), input_.scans,
+                                samples_, settings_.registration, scale_m_);
+    const PoseDifference off = difference(link.fixed_from_moving, attempt.found.fixed_from_moving);
+    attempt.succeeded = attempt.found.used && off.translation_m <= kLinkError_m * attempt.links_between &&
+                        off.rotation_rad <= kLinkError_rad * attempt.links_between;
+  }
+
+  // Pairs that do not fit at the present poses, but did by themselves. The further off, the less they pull:
+  // one that no other link supports must not bend the rest.
+  void addMeasured(std::vector<PairTerm>& ties) const {
+    for (const JointLink& link : links_) {
+      if (link.used) continue;
+      const auto attempt = attempts_.find({link.fixed, link.moving});
+      if (attempt == attempts_.end() || !attempt->second.succeeded) continue;
+      const JointLink& found = attempt->second.found;
+      const Pose present = pose(link.fixed).inverse() * pose(link.moving);
+      const PoseDifference off = difference(present, found.fixed_from_moving);
+      const double distance = off.translation_m + kTurnArm_m * off.rotation_rad;
+      const double scale = settings_.registration.loss_start_m;
+      const double weight = gemanMcClureWeight(distance * distance, scale * scale);
+      ties.push_back(
+          measuredPoseTerm(link.fixed, link.moving, present, found.fixed_from_moving, weight * found.h));
+    }
+  }
+
   void findCandidates(RelaxationStep& report) {
     candidates_ = overlapCandidates(input_.scans, poses_, settings_, threads_);
     report.events.emplace_back();
@@ -99,7 +235,8 @@ class JointRelaxation : public RelaxationEngine {
     std::set<std::pair<int, int>> linked;
     for (const JointLink& link : links_) {
       if (!link.used) continue;
-      list.push_back({link.fixed, link.moving, link.fixed_from_moving, link.h, link.b});
+      list.push_back(carriedTerm({link.fixed, link.moving, link.fixed_from_moving, link.h, link.b},
+                                 pose(link.fixed).inverse() * pose(link.moving)));
       linked.emplace(link.fixed, link.moving);
     }
     for (const PoseConstraint& c : input_.constraints) {
@@ -110,8 +247,8 @@ class JointRelaxation : public RelaxationEngine {
     return list;
   }
 
-  void solve(RelaxationStep& report, bool settling) {
-    const std::vector<PairTerm> ties = terms();
+  // One Gauss-Newton step; false, with a warning, where the equations cannot be solved.
+  bool solve(const std::vector<PairTerm>& ties, RelaxationEvent& solved) {
     tied_ = tiedToHeld(poses_.size(), pinned_, ties);
     std::vector<char> held = pinned_;
     for (std::size_t i = 0; i < held.size(); ++i)
@@ -119,9 +256,8 @@ class JointRelaxation : public RelaxationEngine {
     const Result<std::vector<Vector6d>> motions = solvePoses(poses_.size(), held, ties, kDamping);
     if (!motions) {
       warnings_.push_back(motions.error().what + "; the poses are those of the step before");
-      return end(report);
+      return false;
     }
-    RelaxationEvent solved;
     solved.kind = RelaxationEventKind::Solved;
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       if (held[i]) continue;
@@ -132,23 +268,26 @@ class JointRelaxation : public RelaxationEngine {
       solved.rotation_rad = std::max(solved.rotation_rad, by.rotation_rad);
     }
     describe(solved);
+    return true;
+  }
+
+  void settle(RelaxationStep& report, bool settling) {
+    RelaxationEvent solved;
+    if (!solve(terms(), solved)) return end(report);
     report.events.push_back(solved);
     ++iterations_;
-    updateScale();
+    updateScale(solved.translation_m);
     const RegistrationSettings& r = settings_.registration;
     const bool tiny = solved.translation_m < r.min_translation_m && solved.rotation_rad < r.min_rotation_rad;
-    const bool same =
-        settling &&
-        std::abs(solved.rms_m - last_rms_m_) < 0.5 * r.min_change * std::max(last_rms_m_, 1e-12) &&
-        solved.translation_m < 10.0 * r.min_translation_m && solved.rotation_rad < 10.0 * r.min_rotation_rad;
+    const bool same = std::abs(solved.rms_m - last_rms_m_) < 0.5 * r.min_change * last_rms_m_ &&
+                      solved.translation_m < 10.0 * r.min_translation_m &&
+                      solved.rotation_rad < 10.0 * r.min_rotation_rad;
     last_rms_m_ = solved.rms_m;
-    report.fraction = std::min(0.95, iterations_ / (iterations_ + 4.0));
-    const bool nothing_to_do = ties.empty() || std::ranges::all_of(held, [](char h) { return h != 0; });
+    report.fraction = 0.5 + 0.5 * std::min(0.95, iterations_ / (iterations_ + 4.0));
     if (settling && (tiny || same)) return end(report);
     if (iterations_ >= r.max_iterations) {
-      if (!nothing_to_do)
-        warnings_.push_back("the relaxation was still moving after " + std::to_string(iterations_) +
-                            " steps; raise max-iterations, or look at the result");
+      warnings_.push_back("the relaxation was still moving after " + std::to_string(iterations_) +
+                          " steps; raise max-iterations, or look at the result");
       end(report);
     }
   }
@@ -165,13 +304,11 @@ class JointRelaxation : public RelaxationEngine {
     solved.loss_scale_m = scale_m_;
   }
 
-  void updateScale() {
+  // Not while a loop is still on the move: narrowing then drops links that would come to fit.
+  void updateScale(double moved_m) {
     const RegistrationSettings& r = settings_.registration;
+    if (moved_m > kNarrowBelow_m && ++waited_ <= kWaitAtMost) return;
     if (r.loss != Loss::Annealed || own_scale_steps_left_ == 0) return;
-    if (scale_m_ > r.loss_end_m) {
-      scale_m_ = std::max(r.loss_end_m, scale_m_ * r.loss_factor);
-      return;
-    }
     --own_scale_steps_left_;
     scale_m_ = std::clamp(medianResidual(links_), r.loss_minimum_m, r.loss_end_m);
   }
@@ -237,6 +374,10 @@ class JointRelaxation : public RelaxationEngine {
   }
   static std::string percent(double share) { return std::to_string(std::lround(100.0 * share)) + " %"; }
 
+  bool closing_ = true;
+  int rounds_ = 0;
+  int waited_ = 0;
+  std::map<std::pair<int, int>, Attempt> attempts_;
   Samples samples_;
   std::vector<std::pair<int, int>> candidates_;
   std::vector<JointLink> links_;

@@ -66,17 +66,16 @@ void addTerm(const PairTerm& term, int fixed, int moving, Assembly& assembly) {
 
 PairTerm measuredPoseTerm(int fixed, int moving, const Pose& fixed_from_moving,
                           const Pose& measured_fixed_from_moving, const Matrix6d& information) {
-  PairTerm term;
-  term.fixed = fixed;
-  term.moving = moving;
-  term.fixed_from_moving = fixed_from_moving;
-  // measured.moved(off) is the present pose, so d = -off would bring it there.
-  const Pose off = fixed_from_moving * measured_fixed_from_moving.inverse();
-  Vector6d residual;
-  residual << rotationLog(off.quaternion()), off.translation();
-  term.h = information;
-  term.b = information * residual;
-  return term;
+  return carriedTerm({fixed, moving, measured_fixed_from_moving, information, Vector6d::Zero()},
+                     fixed_from_moving);
+}
+
+PairTerm carriedTerm(const PairTerm& term, const Pose& fixed_from_moving) {
+  // term.fixed_from_moving.moved(off) is the new pose.
+  const Pose motion = fixed_from_moving * term.fixed_from_moving.inverse();
+  Vector6d off;
+  off << rotationLog(motion.quaternion()), motion.translation();
+  return {term.fixed, term.moving, fixed_from_moving, term.h, term.b + term.h * off};
 }
 
 Result<std::vector<Vector6d>> solvePoses(std::size_t count, const std::vector<char>& held,

@@ -23,6 +23,9 @@ struct PairTerm {
 PairTerm measuredPoseTerm(int fixed, int moving, const Pose& fixed_from_moving,
                           const Pose& measured_fixed_from_moving, const Matrix6d& information);
 
+// The same quadratic form, about another relative pose near its own.
+PairTerm carriedTerm(const PairTerm& term, const Pose& fixed_from_moving);
+
 // One Gauss-Newton step of all poses: the small motions xi_i (rotation, translation), one a pose, each on the
 // right of its pose, world_from_i * Pose().moved(xi_i), that minimise the sum of the terms; to first order
 // the motion of a term is d = Ad(fixed_from_moving) xi_moving - xi_fixed. Motions of `held` poses are zero.

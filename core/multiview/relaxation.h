@@ -34,9 +34,11 @@ struct RelaxationInput {
 };
 
 enum class RelaxationEventKind {
-  Activated,    // a scan came into the active set; `pairs`: its neighbours there
-  Queued,       // a scan was put at the end of the queue
-  Aligned,      // a scan was registered onto its neighbours; `pairs`, `rms_m`, `text`: how that ended
+  Activated,  // a scan came into the active set; `pairs`: its neighbours there
+  Queued,     // a scan was put at the end of the queue
+  // A scan was registered onto its neighbours (Joint: onto `other` alone, which it did not fit yet); `pairs`,
+  // `rms_m`, `text`: how that ended.
+  Aligned,
   MovedBy,      // a scan moved by translation_m and rotation_rad
   Kept,         // a scan stays where it is; `text`: why
   VisitBound,   // a scan was not queued again: it has been visited as often as allowed

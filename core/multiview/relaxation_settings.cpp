@@ -45,6 +45,8 @@ RegistrationSettings jointRegistrationSettings() {
   s.loss_factor = 0.5;
   s.min_translation_m = 1e-4;
   s.min_rotation_rad = 1e-5;
+  s.min_overlap = 0.2;
+  s.min_agreement = 0.65;
   return s;
 }
 
