@@ -48,12 +48,12 @@ JointLink measureLink(int fixed, int moving, const Pose& fixed_from_moving,
   link.moving = moving;
   link.fixed_from_moving = fixed_from_moving;
 
-  const bool both = settings.both_directions && loss_scale_m <= settings.both_directions_below_m;
   RejectionState rejection;
   rejection.distance_bound_m = settings.max_distance_m;
   std::vector<Correspondence> pairs;
-  const RejectionCounts counts = findPairs(*scans[first], *scans[second], link.fixed_from_moving,
-                                           samples[first], samples[second], both, settings, rejection, pairs);
+  const RejectionCounts counts =
+      findPairs(*scans[first], *scans[second], link.fixed_from_moving, samples[first], samples[second],
+                loss_scale_m, settings, rejection, pairs);
   link.pairs = counts[static_cast<std::size_t>(RejectReason::None)];
   if (link.pairs < static_cast<std::size_t>(settings.min_pairs)) return link;
 
@@ -100,7 +100,7 @@ std::vector<JointLink> measureLinks(std::span<const std::pair<int, int>> candida
   return links;
 }
 
-double medianResidual(std::span<const JointLink> links) {
+double ownResidual(std::span<const JointLink> links) {
   std::vector<std::pair<double, std::size_t>> medians;
   std::size_t total = 0;
   for (const JointLink& link : links) {
@@ -112,7 +112,7 @@ double medianResidual(std::span<const JointLink> links) {
   std::size_t passed = 0;
   for (const auto& [median, pairs] : medians) {
     passed += pairs;
-    if (2 * passed >= total) return median;
+    if (4 * passed >= total) return median;
   }
   return 0.0;
 }

@@ -29,6 +29,7 @@ namespace {
 constexpr double kDamping = 1.0;
 // As a single registration: the data's own scale is taken this often after the annealing, then kept.
 constexpr int kOwnScaleSteps = 3;
+constexpr double kFinalScale = 0.7;  // of the better links' median residual; ours, on simulated drives
 constexpr double kNarrowBelow_m = 0.005;
 constexpr int kWaitAtMost = 25;
 constexpr int kClosingRounds = 8;
@@ -55,6 +56,7 @@ class JointRelaxation : public RelaxationEngine {
     for (const PreparedScanPtr& scan : input_.scans) samples_.push_back(sampledElements(scan->elements, r));
     scale_m_ = r.loss == Loss::Annealed ? r.loss_end_m : r.loss == Loss::GemanMcClure ? r.loss_scale_m : 0.0;
     own_scale_steps_left_ = r.loss == Loss::Annealed ? kOwnScaleSteps : 0;
+    widest_m_ = scale_m_;
     tied_.assign(poses_.size(), 0);
   }
 
@@ -115,6 +117,7 @@ class JointRelaxation : public RelaxationEngine {
 
   void close(RelaxationStep& report, const std::stop_token& stop) {
     findCandidates(report);
+    if (rounds_ == 0) takeOwnScale(stop);
     std::vector<JointLink> links = measureLinks(candidates_, input_.scans, samples_, poses_,
                                                 settings_.registration, scale_m_, threads_, stop);
     std::map<std::pair<int, int>, Attempt> attempts = attempts_;
@@ -147,6 +150,21 @@ class JointRelaxation : public RelaxationEngine {
     const bool at_rest = solved.translation_m < settings_.registration.loss_minimum_m &&
                          solved.rotation_rad * kTurnArm_m < settings_.registration.loss_minimum_m;
     closing_ = misfits > 0 && !at_rest && rounds_ < kClosingRounds;
+  }
+
+  // How well surfaces fit is a matter of the site and the scanner. Neighbours in time have been registered,
+  // so their residuals tell; at twice their median a pair that does not fit yet stands out.
+  void takeOwnScale(const std::stop_token& stop) {
+    const RegistrationSettings& r = settings_.registration;
+    if (r.loss != Loss::Annealed) return;
+    std::vector<std::pair<int, int>> in_time;
+    for (const auto& pair : candidates_)
+      if (pair.second == pair.first + 1) in_time.push_back(pair);
+    const std::vector<JointLink> links =
+        measureLinks(in_time, input_.scans, samples_, poses_, r, scale_m_, threads_, stop);
+    const double median = ownResidual(links);
+    if (median > 0.0) scale_m_ = std::clamp(2.0 * median, r.loss_minimum_m, r.loss_end_m);
+    widest_m_ = scale_m_;
   }
 
   void registerMisfits(const std::vector<JointLink>& links, std::map<std::pair<int, int>, Attempt>& attempts,
@@ -310,7 +328,8 @@ class JointRelaxation : public RelaxationEngine {
     if (moved_m > kNarrowBelow_m && ++waited_ <= kWaitAtMost) return;
     if (r.loss != Loss::Annealed || own_scale_steps_left_ == 0) return;
     --own_scale_steps_left_;
-    scale_m_ = std::clamp(medianResidual(links_), r.loss_minimum_m, r.loss_end_m);
+    scale_m_ = std::clamp(kFinalScale * ownResidual(links_), r.loss_minimum_m,
+                          std::max(widest_m_, r.loss_minimum_m));
   }
 
   void end(RelaxationStep& report) {
@@ -383,6 +402,7 @@ class JointRelaxation : public RelaxationEngine {
   std::vector<JointLink> links_;
   std::vector<char> tied_;  // to scan 0 or a pin, at the last step
   double scale_m_ = 0.0;
+  double widest_m_ = 0.0;  // of the loss scales of this data
   double last_rms_m_ = 0.0;
   int own_scale_steps_left_ = 0;
   int iterations_ = 0;

@@ -6,7 +6,9 @@ namespace tiltmap {
 
 namespace {
 
+// As PreparedScan's own.
 constexpr double kBucket_rad = 3.0 * kDegree;
+constexpr double kWideBucket_rad = 9.0 * kDegree;
 
 void appendMoved(const SurfaceElements& from, const Pose& to_from_from, SurfaceElements& to) {
   const Eigen::Matrix3d rotation = to_from_from.rotation();
@@ -39,10 +41,12 @@ PreparedScanPtr metascan(std::span<const PreparedScanPtr> scans, std::span<const
     result->raw_points += scans[index]->raw_points;
   }
   if (!result->elements.empty()) {
-    if (settings.pair_choice == PairChoice::Projective)
+    if (settings.pair_choice == PairChoice::Projective) {
       result->directions.emplace(result->elements.position, kBucket_rad);
-    else
+      result->wide_directions.emplace(result->elements.position, kWideBucket_rad);
+    } else {
       result->tree.emplace(result->elements.position);
+    }
   }
   return result;
 }

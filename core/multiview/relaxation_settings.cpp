@@ -39,14 +39,13 @@ void addActiveSet(Table& t) {
 
 RegistrationSettings jointRegistrationSettings() {
   RegistrationSettings s;
-  s.patch_rows = 3;
-  s.patch_columns = 6;
+  s.patch_drop_edges = true;
   s.loss_start_m = 0.5;
   s.loss_factor = 0.5;
   s.min_translation_m = 1e-4;
   s.min_rotation_rad = 1e-5;
   s.min_overlap = 0.2;
-  s.min_agreement = 0.65;
+  s.min_agreement = 0.4;
   return s;
 }
 

@@ -14,8 +14,8 @@ enum class RelaxationMethod {
 };
 
 // The registration's values that serve many scans at once. Starts are good already, so the loss begins
-// narrower; patches are small, because large ones smooth curved ground, whose bias then adds up along a
-// drive.
+// narrower. Cells on depth edges are left out: mixed pixels pull every pair a little the same way, which adds
+// up along a drive.
 RegistrationSettings jointRegistrationSettings();
 
 // Plain data, SI units. Describe and set it through relaxationParameters().

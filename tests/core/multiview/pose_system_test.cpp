@@ -107,7 +107,9 @@ TEST(PoseSystem, TheOrderOfFixedAndMovingDoesNotMatter) {
     // Exact where all measurements agree, so equal up to second order in the
     // error.
     EXPECT_LT(((*there)[i] - (*back)[i]).norm(), 0.05 * (*there)[i].norm() + 1e-9) << i;
-    if (i > 0) EXPECT_GT((*there)[i].norm(), 1e-4) << i;
+    if (i > 0) {
+      EXPECT_GT((*there)[i].norm(), 1e-4) << i;
+    }
   }
 }
 

@@ -24,7 +24,8 @@ inline const Drive& drive(ExperimentId id, std::uint64_t seed) {
   static std::map<std::pair<ExperimentId, std::uint64_t>, Drive> drives;
   Drive& made = drives[{id, seed}];
   if (!made.scans.empty()) return made;
-  for (SimulatedStop& stop : simulateExperiment(id, seed, 0, 2).value()) {
+  std::vector<SimulatedStop> stops = simulateExperiment(id, seed, 0, 2).value();
+  for (SimulatedStop& stop : stops) {
     made.truth.push_back(stop.truth);
     made.scans.push_back(std::move(stop.scan));
   }
