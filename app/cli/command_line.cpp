@@ -76,7 +76,7 @@ int run(int argc, char** argv) {
   app.footer("`tiltmap COMMAND --help` tells the rest.");
 
   Chosen chosen;
-  for (const auto add : {addNew, addSimulate, addImport, addInfo, addRegister, addPoses, addEvaluate,
+  for (const auto add : {addNew, addSimulate, addImport, addInfo, addRegister, addRelax, addPoses, addEvaluate,
                          addExport, addParameters, addHistory, addDemo})
     add(app, chosen);
 

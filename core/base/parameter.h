@@ -1,6 +1,7 @@
 // Parameters described once. Command line flag, form, project file, manual and report all come from here.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <map>
@@ -118,14 +119,16 @@ class ParameterTable {
         [member](const Settings& s) { return ParameterValue(s.*member); },
         [member](Settings& s, const ParameterValue& v) { s.*member = std::get<std::string>(v); });
   }
-  // Every parameter and preset of another table, whose settings are a member of these.
+  // Every parameter and preset of another table, whose settings are a member of these. A preset that was made
+  // here already, under the same name, stays what it is.
   template <class Inner>
   void include(const ParameterTable<Inner>& inner, Inner Settings::* member) {
     for (const auto& entry : inner.entries_)
       add(inner.infos_[entry.index], [get = entry.get, member](const Settings& s) { return get(s.*member); },
           [set = entry.set, member](Settings& s, const ParameterValue& v) { set(s.*member, v); });
     for (const auto& [preset, settings] : inner.presets_) {
-      if (preset.name == "default") continue;
+      const auto same = [&name = preset.name](const auto& own) { return own.first.name == name; };
+      if (std::any_of(presets_.begin(), presets_.end(), same)) continue;
       Settings outer;
       outer.*member = settings;
       presets_.push_back({preset, std::move(outer)});
@@ -133,19 +136,6 @@ class ParameterTable {
   }
   void preset(std::string name, std::string help, Settings settings) {
     presets_.push_back({{std::move(name), std::move(help)}, std::move(settings)});
-  }
-
-  // Every parameter of another table, which must outlive this one; its settings are a member of these. Presets
-  // stay behind: what they mean here is for the caller to say.
-  template <class Inner>
-  void includeParameters(const ParameterTable<Inner>& inner, Inner Settings::* member) {
-    for (const ParameterInfo& info : inner.infos())
-      add(
-          info,
-          [&inner, name = info.name, member](const Settings& s) { return inner.values(s.*member).at(name); },
-          [&inner, name = info.name, member](Settings& s, const ParameterValue& v) {
-            static_cast<void>(inner.apply({{name, v}}, s.*member));  // checked by the caller against `info`
-          });
   }
 
   const std::string& operation() const { return operation_; }

@@ -79,7 +79,7 @@ class ActiveSetRelaxation : public RelaxationEngine {
 
   bool areNeighbours(int a, int b) const {
     const auto found = counts_.find({std::min(a, b), std::max(a, b)});
-    return found != counts_.end() && found->second.valid &&
+    return !isExcluded(a, b) && found != counts_.end() && found->second.valid &&
            found->second.pairs > static_cast<std::size_t>(settings_.neighbour_pairs);
   }
 

@@ -236,6 +236,7 @@ class JointRelaxation : public RelaxationEngine {
 
   void findCandidates(RelaxationStep& report) {
     candidates_ = overlapCandidates(input_.scans, poses_, settings_, threads_);
+    std::erase_if(candidates_, [this](const auto& pair) { return isExcluded(pair.first, pair.second); });
     report.events.emplace_back();
     report.events.back().kind = RelaxationEventKind::LinksFound;
     report.events.back().pairs = candidates_.size();
@@ -375,6 +376,7 @@ class JointRelaxation : public RelaxationEngine {
       const auto found = std::ranges::find_if(
           links_, [i](const JointLink& link) { return link.fixed == i - 1 && link.moving == i; });
       if (found != links_.end() && found->used) continue;
+      if (isExcluded(i - 1, i)) continue;
       RelaxationEvent dropped;
       dropped.kind = RelaxationEventKind::LinkDropped;
       dropped.scan = i - 1;

@@ -108,6 +108,7 @@ RelaxationEngine::RelaxationEngine(RelaxationInput input, const RelaxationSettin
       threads_(threads),
       poses_(input_.world_from_scan),
       pinned_(input_.scans.size(), 0) {
+  for (const auto& [a, b] : input_.excluded) excluded_.insert(std::minmax(a, b));
   pinned_.front() = 1;
   for (const int pin : input_.pins) pinned_[static_cast<std::size_t>(pin)] = 1;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -31,6 +32,8 @@ struct RelaxationInput {
   std::vector<Pose> world_from_scan;        // starts, one a scan
   std::vector<int> pins;                    // scans that never move; scan 0 never does
   std::vector<PoseConstraint> constraints;  // Joint only
+  // Pairs of scans that must not be linked by their surfaces (a link that was disabled), either way round.
+  std::vector<std::pair<int, int>> excluded = {};
 };
 
 enum class RelaxationEventKind {

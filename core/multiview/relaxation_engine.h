@@ -1,7 +1,9 @@
 // What the three methods of relaxation have in common, for Relaxation alone.
 #pragma once
 
+#include <algorithm>
 #include <memory>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -35,6 +37,7 @@ class RelaxationEngine {
   const PreparedScanPtr& scanPtr(int i) const { return input_.scans[static_cast<std::size_t>(i)]; }
   const Pose& pose(int i) const { return poses_[static_cast<std::size_t>(i)]; }
   bool isPinned(int i) const { return pinned_[static_cast<std::size_t>(i)]; }
+  bool isExcluded(int a, int b) const { return excluded_.contains(std::minmax(a, b)); }
   void finish(RelaxationStep& report);
   void cancel(RelaxationStep& report);
 
@@ -43,6 +46,7 @@ class RelaxationEngine {
   int threads_ = 0;
   std::vector<Pose> poses_;
   std::vector<char> pinned_;
+  std::set<std::pair<int, int>> excluded_;  // lower first
   std::vector<std::string> warnings_;
   bool finished_ = false, cancelled_ = false;
 };

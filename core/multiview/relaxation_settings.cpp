@@ -87,7 +87,7 @@ const ParameterTable<RelaxationSettings>& relaxationParameters() {
     sequential.registration = RegistrationSettings();
     t.preset("sequential", "each scan onto the union of those before it: accumulates error, the baseline",
              sequential);
-    t.includeParameters(registrationParameters(), &S::registration);
+    t.include(registrationParameters(), &S::registration);
     return t;
   }();
   return table;

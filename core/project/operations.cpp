@@ -4,6 +4,7 @@
 #include "core/project/operations/export_operation.h"
 #include "core/project/operations/import_operation.h"
 #include "core/project/operations/register_operation.h"
+#include "core/project/operations/relax_operation.h"
 #include "core/project/operations/simulate_operation.h"
 
 namespace tiltmap {
@@ -14,6 +15,7 @@ const OperationRegistry& operations() {
     all.add(makeSimulateOperation());
     all.add(makeImportOperation());
     all.add(makeRegisterOperation());
+    all.add(makeRelaxOperation());
     all.add(makeExportOperation());
     all.add(makeRenameOperation());
     all.add(makeRebaseOperation());

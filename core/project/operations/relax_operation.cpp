@@ -1,0 +1,228 @@
+#include "core/project/operations/relax_operation.h"
+
+#include <atomic>
+#include <chrono>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/parallel.h"
+#include "core/multiview/relaxation.h"
+#include "core/project/operations/index_list.h"
+
+namespace tiltmap {
+
+namespace {
+
+struct RelaxSettings {
+  RelaxationSettings relaxation;
+  std::string pin;
+  int threads = 0;
+};
+
+// What a link set by hand is worth where it does not say: two centimetres and half a degree.
+constexpr double kByHand_m = 0.02;
+constexpr double kByHand_rad = 0.5 * kDegree;
+// Preparing the scans, as a share of the progress.
+constexpr double kPreparing = 0.3;
+
+const ParameterTable<RelaxSettings>& relaxTable() {
+  static const ParameterTable<RelaxSettings> table = [] {
+    ParameterTable<RelaxSettings> t("relax");
+    t.text("pin", &RelaxSettings::pin,
+           "Scans that never move, such as 0,5 or 0-3; scan 0 never does, named or not", "ours; thesis 6.2");
+    t.integer("threads", &RelaxSettings::threads, "", 0, 256,
+              "Threads to use, 0 for all cores; the result does not depend on it", "ours");
+    t.include(relaxationParameters(), &RelaxSettings::relaxation);
+    return t;
+  }();
+  return table;
+}
+
+Result<std::vector<int>> pinsOf(const ProjectSnapshot& snapshot, const RelaxSettings& settings) {
+  if (settings.pin.empty()) return std::vector<int>();
+  return parseIndexList(settings.pin, static_cast<int>(snapshot.scans().size()), "--pin");
+}
+
+Result<std::vector<PreparedScanPtr>> prepareScans(const ProjectSnapshot& snapshot,
+                                                  const RelaxSettings& settings, const JobControl& control) {
+  const std::size_t count = snapshot.scans().size();
+  std::vector<Result<PreparedScanPtr>> slots(count, PreparedScanPtr());
+  std::atomic<std::size_t> done = 0;
+  parallelFor(count, settings.threads, [&](std::size_t i) {
+    if (control.stopRequested()) return;
+    slots[i] = snapshot.scans()[i].scan().map(
+        [&](const Scan& scan) { return prepare(scan, settings.relaxation.registration); });
+    control.tell(kPreparing * static_cast<double>(++done) / static_cast<double>(count),
+                 "preparing scan " + std::to_string(i));
+  });
+  if (control.stopRequested())
+    return fail(kCancelled, "relax", "nothing was changed; start it again when you like");
+  std::vector<PreparedScanPtr> prepared;
+  for (auto& slot : slots) {
+    if (!slot) return fail(slot.error());
+    prepared.push_back(*slot);
+  }
+  return prepared;
+}
+
+void addLinks(const ProjectSnapshot& snapshot, RelaxationInput& input) {
+  for (const Link& link : snapshot.links()) {
+    const auto fixed = snapshot.indexOf(link.fixed), moving = snapshot.indexOf(link.moving);
+    if (!fixed || !moving) continue;
+    const int a = static_cast<int>(*fixed), b = static_cast<int>(*moving);
+    if (link.state == LinkState::Disabled) {
+      input.excluded.emplace_back(a, b);
+      continue;
+    }
+    if (!link.usable() || link.origin == LinkOrigin::Odometry) continue;
+    const bool by_hand = link.origin == LinkOrigin::ByHand;
+    if (!by_hand && !link.information) continue;
+    Vector6d information;
+    information << Eigen::Vector3d::Constant(1.0 / (kByHand_rad * kByHand_rad)),
+        Eigen::Vector3d::Constant(1.0 / (kByHand_m * kByHand_m));
+    input.constraints.push_back(
+        {a, b, link.fixed_from_moving, link.information.value_or(information.asDiagonal()), !by_hand});
+  }
+}
+
+bool haveLink(const ProjectSnapshot& snapshot, ScanId a, ScanId b) {
+  for (const Link& link : snapshot.links())
+    if ((link.fixed == a && link.moving == b) || (link.fixed == b && link.moving == a)) return true;
+  return false;
+}
+
+std::vector<Link> newLinks(const ProjectSnapshot& snapshot, const RelaxationResult& result) {
+  std::vector<Link> links;
+  for (const RelaxationLink& found : result.links) {
+    const ScanId fixed = snapshot.scans()[static_cast<std::size_t>(found.fixed)].id;
+    const ScanId moving = snapshot.scans()[static_cast<std::size_t>(found.moving)].id;
+    // The other methods keep no figures a pair; without an information there is nothing to compute from.
+    if (!found.used || found.information.isZero() || haveLink(snapshot, fixed, moving)) continue;
+    Link link;
+    link.fixed = fixed;
+    link.moving = moving;
+    link.fixed_from_moving = found.fixed_from_moving;
+    link.iterations = static_cast<int>(result.steps.size());
+    link.correspondences = static_cast<int>(found.pairs);
+    link.rms_m = found.rms_m;
+    link.overlap = found.overlap;
+    link.stop_reason = "relaxed";
+    link.succeeded = true;
+    link.information = found.information;
+    links.push_back(link);
+  }
+  return links;
+}
+
+nlohmann::json eventJson(const RelaxationStep& step, const RelaxationEvent& event) {
+  nlohmann::json json = {{"step", step.number}, {"event", relaxationEventName(event.kind)}};
+  if (event.scan >= 0) json["scan"] = event.scan;
+  if (event.other >= 0) json["other"] = event.other;
+  if (event.kind == RelaxationEventKind::MovedBy || event.kind == RelaxationEventKind::Solved) {
+    json["translation_m"] = event.translation_m;
+    json["rotation_deg"] = event.rotation_rad / kDegree;
+  }
+  if (event.pairs > 0) json["pairs"] = event.pairs;
+  if (event.rms_m > 0.0) json["rms_m"] = event.rms_m;
+  if (event.loss_scale_m > 0.0) json["loss_scale_m"] = event.loss_scale_m;
+  if (!event.text.empty()) json["text"] = event.text;
+  return json;
+}
+
+nlohmann::json reportOf(const RelaxationResult& result) {
+  nlohmann::json report = {{"moved", nlohmann::json::array()},
+                           {"unlinked", result.unlinked},
+                           {"links", nlohmann::json::array()},
+                           {"steps", result.steps.size()},
+                           {"rms_m", result.rms_m},
+                           {"relaxing_milliseconds", result.milliseconds},
+                           {"events", nlohmann::json::array()}};
+  for (std::size_t i = 0; i < result.moved.size(); ++i)
+    report["moved"].push_back({{"scan", i},
+                               {"translation_m", result.moved[i].translation_m},
+                               {"rotation_deg", result.moved[i].rotation_rad / kDegree}});
+  for (const RelaxationLink& link : result.links)
+    report["links"].push_back({{"fixed", link.fixed},
+                               {"moving", link.moving},
+                               {"pairs", link.pairs},
+                               {"overlap", link.overlap},
+                               {"agreement", link.agreement},
+                               {"rms_m", link.rms_m},
+                               {"used", link.used}});
+  for (const RelaxationStep& step : result.steps)
+    for (const RelaxationEvent& event : step.events) report["events"].push_back(eventJson(step, event));
+  return report;
+}
+
+class RelaxOperation : public SettingsOperation<RelaxSettings> {
+ public:
+  RelaxOperation() : SettingsOperation(relaxTable()) {}
+  std::string title() const override { return "Relax all scans"; }
+  std::string help() const override {
+    return "Takes all overlapping pairs of scans together, not only neighbours in time, and spreads what the "
+           "pairs' errors have added up to. Starts from the stage `pairwise` and makes the stage `relaxed`; "
+           "scan 0 never moves.";
+  }
+
+ protected:
+  Status checkSettings(const ProjectSnapshot& snapshot, const RelaxSettings& settings) const override {
+    if (snapshot.scans().size() < 2)
+      return fail("relaxation needs two scans; the project has " + std::to_string(snapshot.scans().size()),
+                  snapshot.path().string(), "import, simulate or capture more scans first");
+    if (auto pins = pinsOf(snapshot, settings); !pins) return fail(pins.error());
+    return tiltmap::checkSettings(settings.relaxation);
+  }
+
+  Result<OperationResult> runSettings(const SnapshotPtr& snapshot, const RelaxSettings& settings,
+                                      const JobControl& control) const override {
+    const auto started = std::chrono::steady_clock::now();
+    auto pins = pinsOf(*snapshot, settings);
+    if (!pins) return fail(pins.error());
+    auto prepared = prepareScans(*snapshot, settings, control);
+    if (!prepared) return fail(prepared.error());
+
+    OperationResult outcome;
+    RelaxationInput input;
+    input.scans = std::move(*prepared);
+    const bool registered = snapshot->hasStage(Stage::Pairwise);
+    input.world_from_scan = snapshot->filledPoses(registered ? Stage::Pairwise : Stage::Odometry);
+    input.pins = *pins;
+    addLinks(*snapshot, input);
+    if (!registered)
+      outcome.warnings.emplace_back(
+          "the project has no pairwise poses, so the relaxation starts from the odometry, which may be too "
+          "far off; register the pairs first");
+
+    JobControl relaxing = control;
+    relaxing.report = [&control](const Progress& progress) {
+      control.tell(kPreparing + (1.0 - kPreparing) * progress.fraction, progress.message);
+    };
+    auto result = relax(std::move(input), settings.relaxation, settings.threads, relaxing);
+    if (!result) return fail(result.error());
+    outcome.warnings.insert(outcome.warnings.end(), result->warnings.begin(), result->warnings.end());
+
+    nlohmann::json report = reportOf(*result);
+    report["milliseconds"] =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
+    report["start"] = registered ? "pairwise" : "odometry";
+    report["method"] = std::get<std::string>(relaxationParameters().values(settings.relaxation).at("method"));
+    report["warnings"] = outcome.warnings;
+    outcome.report_json = report.dump();
+
+    std::vector<std::pair<ScanId, Pose>> poses;
+    for (std::size_t i = 0; i < result->poses.size(); ++i)
+      poses.emplace_back(snapshot->scans()[i].id, result->poses[i]);
+    outcome.edit = relaxEdit(snapshot, std::move(poses));
+    if (auto links = newLinks(*snapshot, *result); !links.empty())
+      outcome.edit.steps.push_back(AddLinks{std::move(links), false});
+    return outcome;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Operation> makeRelaxOperation() {
+  return std::make_unique<RelaxOperation>();
+}
+
+}  // namespace tiltmap
