@@ -106,7 +106,7 @@ class JointRelaxation : public RelaxationEngine {
   // A pair registered by itself, from the poses it had then.
   struct Attempt {
     int count = 0;
-    int links_between = 0;
+    int links_between = 0;  // the shortest way round, when it was made
     Pose start;
     bool succeeded = false;
     std::size_t pairs = 0;
@@ -182,6 +182,7 @@ class JointRelaxation : public RelaxationEngine {
           attempt.count == 0 ||
           (!attempt.succeeded && (since.translation_m > kTryAgain_m || since.rotation_rad > kTryAgain_rad));
       if (!anew || attempt.count >= kAttempts) continue;
+      attempt.links_between = between;
       todo.push_back(&attempt);
       of.push_back(&link);
     }

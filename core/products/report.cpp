@@ -218,6 +218,21 @@ std::string pairsHtml(const std::vector<ReportPair>& pairs) {
   return "<section><h2>Registered pairs</h2>\n<div class=\"card\">" + table.html() + "</div></section>\n";
 }
 
+std::string movementsHtml(const ReportData& data) {
+  if (data.movements.empty()) return "";
+  HtmlTable table({{"Stop", ""}, {"Moved", "mm"}, {"Turned", "deg"}});
+  for (const ReportMovement& moved : data.movements)
+    table.add(
+        {std::to_string(moved.stop), number(1000.0 * moved.translation_m, 2), number(moved.rotation_deg, 4)});
+  std::string text =
+      "<section><h2>Relaxation</h2>\n<p class=\"dim\">How far each stop moved from its pairwise pose.";
+  if (data.relaxed_links > 0)
+    text += " Beyond the registered pairs, " + groupedInteger(static_cast<long long>(data.relaxed_links)) +
+            (data.relaxed_links == 1 ? " more overlapping pair of scans was used."
+                                     : " more overlapping pairs of scans were used.");
+  return text + "</p>\n<div class=\"card\">" + table.html() + "</div></section>\n";
+}
+
 std::string stagesHtml(const std::vector<ReportStage>& stages) {
   if (stages.empty()) return "";
   std::string text =
@@ -285,6 +300,7 @@ Result<std::string> reportHtml(const ReportData& data) {
   page += filesHtml(data.files);
   page += accuracyHtml(data.stages);
   page += pairsHtml(data.pairs);
+  page += movementsHtml(data);
   page += stagesHtml(data.stages);
   page += parametersHtml(data.parameters);
   page +=

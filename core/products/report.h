@@ -31,6 +31,13 @@ struct ReportPair {
   bool succeeded = true;
 };
 
+// How far the relaxation moved a stop from its pairwise pose.
+struct ReportMovement {
+  std::size_t stop = 0;
+  double translation_m = 0.0;
+  double rotation_deg = 0.0;
+};
+
 struct ReportParameters {
   std::string operation;  // "register"
   std::string preset;     // "default"; may be empty
@@ -54,6 +61,8 @@ struct ReportData {
   std::string picture_caption;
   std::vector<ReportStage> stages;  // in the order of processing
   std::vector<ReportPair> pairs;
+  std::size_t relaxed_links = 0;  // pairs that the relaxation found beyond those
+  std::vector<ReportMovement> movements;
   std::vector<ReportParameters> parameters;
   std::vector<ReportLink> files;
 };

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/project/operation.h"
+#include "core/project/operations/relax_operation.h"
 #include "core/scan/range_image.h"
 
 namespace tiltmap {
@@ -25,11 +26,28 @@ std::vector<ReportPair> pairReports(const ProjectSnapshot& snapshot) {
   std::vector<ReportPair> pairs;
   for (const Link& link : snapshot.links()) {
     const auto fixed = snapshot.indexOf(link.fixed), moving = snapshot.indexOf(link.moving);
-    if (!fixed || !moving) continue;
+    if (!fixed || !moving || link.stop_reason == kFoundByRelaxation) continue;
     pairs.push_back({*fixed, *moving, link.overlap, link.rms_m, link.correspondences, link.iterations,
                      link.stop_reason, link.milliseconds, link.succeeded});
   }
   return pairs;
+}
+
+std::size_t relaxedLinks(const ProjectSnapshot& snapshot) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      snapshot.links(), [](const Link& link) { return link.stop_reason == kFoundByRelaxation; }));
+}
+
+std::vector<ReportMovement> movementsOf(const ProjectSnapshot& snapshot) {
+  std::vector<ReportMovement> movements;
+  if (!snapshot.hasStage(Stage::Pairwise) || !snapshot.hasStage(Stage::Relaxed)) return movements;
+  const std::vector<Pose> before = snapshot.filledPoses(Stage::Pairwise);
+  const std::vector<Pose> after = snapshot.filledPoses(Stage::Relaxed);
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    const PoseDifference by = difference(before[i], after[i]);
+    movements.push_back({i, by.translation_m, by.rotation_rad / kDegree});
+  }
+  return movements;
 }
 
 // The last accepted job of each operation, in the order in which they ran.
@@ -78,6 +96,8 @@ ReportData reportOf(const ProjectSnapshot& snapshot, const std::string& survey_n
   for (const ScanEntry& scan : snapshot.scans()) report.point_count += scan.valid_cells;
   for (const Stage stage : snapshot.stages()) report.stages.push_back(stageReport(snapshot, stage));
   report.pairs = pairReports(snapshot);
+  report.relaxed_links = relaxedLinks(snapshot);
+  report.movements = movementsOf(snapshot);
   for (const JobRecord* job : lastJobs(snapshot)) {
     for (const std::string& warning : job->warnings) report.warnings.push_back(warning);
     const Operation* operation = operations().find(job->operation);

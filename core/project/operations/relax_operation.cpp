@@ -1,13 +1,17 @@
 #include "core/project/operations/relax_operation.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <iterator>
+#include <stdexcept>
 
 #include <nlohmann/json.hpp>
 
 #include "core/base/parallel.h"
 #include "core/multiview/relaxation.h"
 #include "core/project/operations/index_list.h"
+#include "core/project/operations/register_operation.h"
 
 namespace tiltmap {
 
@@ -22,7 +26,8 @@ struct RelaxSettings {
 // What a link set by hand is worth where it does not say: two centimetres and half a degree.
 constexpr double kByHand_m = 0.02;
 constexpr double kByHand_rad = 0.5 * kDegree;
-// Preparing the scans, as a share of the progress.
+// Registering the pairs first, where nobody has, and preparing the scans, as shares of the progress.
+constexpr double kRegistering = 0.4;
 constexpr double kPreparing = 0.3;
 
 const ParameterTable<RelaxSettings>& relaxTable() {
@@ -52,7 +57,7 @@ Result<std::vector<PreparedScanPtr>> prepareScans(const ProjectSnapshot& snapsho
     if (control.stopRequested()) return;
     slots[i] = snapshot.scans()[i].scan().map(
         [&](const Scan& scan) { return prepare(scan, settings.relaxation.registration); });
-    control.tell(kPreparing * static_cast<double>(++done) / static_cast<double>(count),
+    control.tell(static_cast<double>(++done) / static_cast<double>(count),
                  "preparing scan " + std::to_string(i));
   });
   if (control.stopRequested())
@@ -65,8 +70,59 @@ Result<std::vector<PreparedScanPtr>> prepareScans(const ProjectSnapshot& snapsho
   return prepared;
 }
 
-void addLinks(const ProjectSnapshot& snapshot, RelaxationInput& input) {
-  for (const Link& link : snapshot.links()) {
+// Where the relaxation starts from, and what links there are.
+struct RelaxStart {
+  std::vector<Pose> world_from_scan;
+  std::vector<Link> links;
+  std::vector<EditStep> steps;  // of the registration that came first; empty where there was none
+  std::vector<std::string> warnings;
+  bool registered_first = false;
+};
+
+bool joins(const Link& link, ScanId a, ScanId b) {
+  return (link.fixed == a && link.moving == b) || (link.fixed == b && link.moving == a);
+}
+
+// The pairwise poses; where there are none, the pairs are registered first, as `register` does it.
+Result<RelaxStart> startOf(const SnapshotPtr& snapshot, const RelaxSettings& settings,
+                           const JobControl& control) {
+  RelaxStart start;
+  start.links = snapshot->links();
+  if (snapshot->hasStage(Stage::Pairwise)) {
+    start.world_from_scan = snapshot->filledPoses(Stage::Pairwise);
+    return start;
+  }
+  const auto registration = makeRegisterOperation();
+  const bool thesis = settings.relaxation.method == RelaxationMethod::ActiveSet;
+  auto values = registration->presetValues(thesis ? "thesis" : "default");
+  if (!values) return fail(values.error());
+  (*values)["threads"] = static_cast<long long>(settings.threads);
+  auto registered = registration->run(snapshot, *values, control);
+  if (!registered) return fail(registered.error());
+  start.registered_first = true;
+  start.steps = std::move(registered->edit.steps);
+  start.warnings.emplace_back(
+      "the project had no pairwise poses, so every scan was registered to the one before it first");
+  start.warnings.insert(start.warnings.end(), registered->warnings.begin(), registered->warnings.end());
+  // The order of the scans, as filledPoses gives it.
+  for (const EditStep& step : start.steps) {
+    if (const auto* added = std::get_if<AddLinks>(&step))
+      for (const Link& link : added->links) {
+        std::erase_if(start.links, [&](const Link& old) {
+          return old.origin == link.origin && joins(old, link.fixed, link.moving);
+        });
+        start.links.push_back(link);
+      }
+    if (const auto* poses = std::get_if<SetPoses>(&step))
+      for (const auto& [id, pose] : poses->poses) start.world_from_scan.push_back(pose);
+  }
+  if (start.world_from_scan.size() != snapshot->scans().size())
+    throw std::logic_error("relax: the registration did not place every scan");
+  return start;
+}
+
+void addLinks(const ProjectSnapshot& snapshot, const std::vector<Link>& links, RelaxationInput& input) {
+  for (const Link& link : links) {
     const auto fixed = snapshot.indexOf(link.fixed), moving = snapshot.indexOf(link.moving);
     if (!fixed || !moving) continue;
     const int a = static_cast<int>(*fixed), b = static_cast<int>(*moving);
@@ -74,7 +130,9 @@ void addLinks(const ProjectSnapshot& snapshot, RelaxationInput& input) {
       input.excluded.emplace_back(a, b);
       continue;
     }
-    if (!link.usable() || link.origin == LinkOrigin::Odometry) continue;
+    // What an earlier relaxation found is found again, or it does not hold any more.
+    if (!link.usable() || link.origin == LinkOrigin::Odometry || link.stop_reason == kFoundByRelaxation)
+      continue;
     const bool by_hand = link.origin == LinkOrigin::ByHand;
     if (!by_hand && !link.information) continue;
     Vector6d information;
@@ -85,19 +143,24 @@ void addLinks(const ProjectSnapshot& snapshot, RelaxationInput& input) {
   }
 }
 
-bool haveLink(const ProjectSnapshot& snapshot, ScanId a, ScanId b) {
-  for (const Link& link : snapshot.links())
-    if ((link.fixed == a && link.moving == b) || (link.fixed == b && link.moving == a)) return true;
+// A link that says more than one found here would: set by hand, disabled, or registered with success.
+bool haveLink(const std::vector<Link>& links, ScanId a, ScanId b) {
+  for (const Link& link : links) {
+    const bool ours = link.origin == LinkOrigin::Automatic && link.state == LinkState::Active &&
+                      (!link.succeeded || link.stop_reason == kFoundByRelaxation);
+    if (joins(link, a, b) && !ours) return true;
+  }
   return false;
 }
 
-std::vector<Link> newLinks(const ProjectSnapshot& snapshot, const RelaxationResult& result) {
-  std::vector<Link> links;
+std::vector<Link> newLinks(const ProjectSnapshot& snapshot, const std::vector<Link>& links,
+                           const RelaxationResult& result) {
+  std::vector<Link> found_links;
   for (const RelaxationLink& found : result.links) {
     const ScanId fixed = snapshot.scans()[static_cast<std::size_t>(found.fixed)].id;
     const ScanId moving = snapshot.scans()[static_cast<std::size_t>(found.moving)].id;
     // The other methods keep no figures a pair; without an information there is nothing to compute from.
-    if (!found.used || found.information.isZero() || haveLink(snapshot, fixed, moving)) continue;
+    if (!found.used || found.information.isZero() || haveLink(links, fixed, moving)) continue;
     Link link;
     link.fixed = fixed;
     link.moving = moving;
@@ -106,12 +169,26 @@ std::vector<Link> newLinks(const ProjectSnapshot& snapshot, const RelaxationResu
     link.correspondences = static_cast<int>(found.pairs);
     link.rms_m = found.rms_m;
     link.overlap = found.overlap;
-    link.stop_reason = "relaxed";
+    link.stop_reason = kFoundByRelaxation;
     link.succeeded = true;
     link.information = found.information;
-    links.push_back(link);
+    found_links.push_back(link);
   }
-  return links;
+  return found_links;
+}
+
+// Links of an earlier relaxation that this one did not find again.
+std::vector<LinkId> staleLinks(const ProjectSnapshot& snapshot, const std::vector<Link>& found) {
+  std::vector<LinkId> stale;
+  for (const Link& link : snapshot.links()) {
+    if (link.stop_reason != kFoundByRelaxation || link.origin != LinkOrigin::Automatic ||
+        link.state != LinkState::Active)
+      continue;
+    const bool again =
+        std::ranges::any_of(found, [&](const Link& other) { return joins(other, link.fixed, link.moving); });
+    if (!again) stale.push_back(link.id);
+  }
+  return stale;
 }
 
 nlohmann::json eventJson(const RelaxationStep& step, const RelaxationEvent& event) {
@@ -154,14 +231,41 @@ nlohmann::json reportOf(const RelaxationResult& result) {
   return report;
 }
 
+// Poses and links as one edit, with those of the registration that came first.
+ProjectEdit editOf(const SnapshotPtr& snapshot, RelaxStart start, const RelaxationResult& result) {
+  std::vector<std::pair<ScanId, Pose>> poses;
+  for (std::size_t i = 0; i < result.poses.size(); ++i)
+    poses.emplace_back(snapshot->scans()[i].id, result.poses[i]);
+  ProjectEdit edit = relaxEdit(snapshot, std::move(poses));
+  if (start.registered_first) edit.title = "register and " + edit.title;
+  edit.steps.insert(edit.steps.begin(), std::make_move_iterator(start.steps.begin()),
+                    std::make_move_iterator(start.steps.end()));
+  std::vector<Link> found = newLinks(*snapshot, start.links, result);
+  // First, while they are surely there.
+  if (auto stale = staleLinks(*snapshot, found); !stale.empty())
+    edit.steps.insert(edit.steps.begin(), DeleteLinks{std::move(stale)});
+  if (!found.empty()) edit.steps.push_back(AddLinks{std::move(found), true});
+  return edit;
+}
+
+// The control of a part of the work: its progress counts from one share to the other.
+JobControl part(const JobControl& control, double from, double to) {
+  JobControl inner = control;
+  inner.report = [&control, from, to](const Progress& progress) {
+    control.tell(from + (to - from) * progress.fraction, progress.message);
+  };
+  return inner;
+}
+
 class RelaxOperation : public SettingsOperation<RelaxSettings> {
  public:
   RelaxOperation() : SettingsOperation(relaxTable()) {}
   std::string title() const override { return "Relax all scans"; }
   std::string help() const override {
     return "Takes all overlapping pairs of scans together, not only neighbours in time, and spreads what the "
-           "pairs' errors have added up to. Starts from the stage `pairwise` and makes the stage `relaxed`; "
-           "scan 0 never moves.";
+           "pairs' errors have added up to. Starts from the stage `pairwise` (registers every scan to the "
+           "one "
+           "before it first where there is none) and makes the stage `relaxed`; scan 0 never moves.";
   }
 
  protected:
@@ -178,43 +282,36 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
     const auto started = std::chrono::steady_clock::now();
     auto pins = pinsOf(*snapshot, settings);
     if (!pins) return fail(pins.error());
-    auto prepared = prepareScans(*snapshot, settings, control);
+    const bool registers = !snapshot->hasStage(Stage::Pairwise);
+    const double from = registers ? kRegistering : 0.0;
+    auto start = startOf(snapshot, settings, part(control, 0.0, from));
+    if (!start) return fail(start.error());
+    const double prepared_at = from + kPreparing * (1.0 - from);
+    auto prepared = prepareScans(*snapshot, settings, part(control, from, prepared_at));
     if (!prepared) return fail(prepared.error());
 
     OperationResult outcome;
+    outcome.warnings = start->warnings;
     RelaxationInput input;
     input.scans = std::move(*prepared);
-    const bool registered = snapshot->hasStage(Stage::Pairwise);
-    input.world_from_scan = snapshot->filledPoses(registered ? Stage::Pairwise : Stage::Odometry);
+    input.world_from_scan = start->world_from_scan;
     input.pins = *pins;
-    addLinks(*snapshot, input);
-    if (!registered)
-      outcome.warnings.emplace_back(
-          "the project has no pairwise poses, so the relaxation starts from the odometry, which may be too "
-          "far off; register the pairs first");
+    addLinks(*snapshot, start->links, input);
 
-    JobControl relaxing = control;
-    relaxing.report = [&control](const Progress& progress) {
-      control.tell(kPreparing + (1.0 - kPreparing) * progress.fraction, progress.message);
-    };
-    auto result = relax(std::move(input), settings.relaxation, settings.threads, relaxing);
+    auto result =
+        relax(std::move(input), settings.relaxation, settings.threads, part(control, prepared_at, 1.0));
     if (!result) return fail(result.error());
     outcome.warnings.insert(outcome.warnings.end(), result->warnings.begin(), result->warnings.end());
 
     nlohmann::json report = reportOf(*result);
     report["milliseconds"] =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
-    report["start"] = registered ? "pairwise" : "odometry";
+    report["registered_first"] = start->registered_first;
     report["method"] = std::get<std::string>(relaxationParameters().values(settings.relaxation).at("method"));
     report["warnings"] = outcome.warnings;
     outcome.report_json = report.dump();
 
-    std::vector<std::pair<ScanId, Pose>> poses;
-    for (std::size_t i = 0; i < result->poses.size(); ++i)
-      poses.emplace_back(snapshot->scans()[i].id, result->poses[i]);
-    outcome.edit = relaxEdit(snapshot, std::move(poses));
-    if (auto links = newLinks(*snapshot, *result); !links.empty())
-      outcome.edit.steps.push_back(AddLinks{std::move(links), false});
+    outcome.edit = editOf(snapshot, std::move(*start), *result);
     return outcome;
   }
 };

@@ -7,10 +7,16 @@
 
 namespace tiltmap {
 
-// Starts from the stage `pairwise`, or from the odometry where there is none (a warning). Its edit holds the
-// stage `relaxed`, a pose a scan, and a link for each overlapping pair of scans that had none yet. Links set
-// by hand pull as they stand; links found by registration do where the surfaces give none now; pairs whose
-// link is disabled are left out.
+// The stop reason of a link that a relaxation found, not a registration of its own.
+inline constexpr const char* kFoundByRelaxation = "relaxed";
+
+// Starts from the stage `pairwise`; where there is none, every scan is registered to the one before it first
+// (a warning says so), in the same edit. Its edit holds the stage `relaxed`, a pose a scan, and a link of
+// origin automatic for each overlapping pair of scans that none of its own joins; those of an earlier
+// relaxation are replaced. Links set by hand pull as they stand; links found by registration do where the
+// surfaces give none now; pairs whose link is disabled are left out. Its report has `milliseconds`, `moved`
+// (scan, translation_m, rotation_deg), `unlinked`, `warnings`, and the record: `events`, `links`, `steps`,
+// `rms_m`, `method`, `registered_first`.
 std::unique_ptr<Operation> makeRelaxOperation();
 
 }  // namespace tiltmap

@@ -52,6 +52,8 @@ ReportData example() {
                  {localisationTable("pairwise", estimated), *evaluateTrajectory(estimated, truth)}};
   data.pairs = {{0, 1, 0.734, 0.0123, 8123, 17, "small change", 91.26, true},
                 {1, 2, 0.02, 0.4, 12, 1, "too few pairs", 3.0, false}};
+  data.relaxed_links = 1234;
+  data.movements = {{0, 0.0, 0.0}, {1, 0.01234, 0.0567}};
   ParameterInfo info;
   info.name = "max-distance";
   info.unit = "m";
@@ -80,6 +82,9 @@ TEST(Report, IsWellFormedAndHoldsTheValues) {
                            "<td>small change</td>",
                            "<td class=\"n\">91.3</td>",
                            "failed: too few pairs",
+                           "1,234 more overlapping pairs",
+                           "<td class=\"n\">12.34</td>",
+                           "<td class=\"n\">0.0567</td>",
                            "Stops after pairwise registration",
                            "<td class=\"n\">1.003</td>",
                            "<td class=\"n\">−3.000</td>",

@@ -76,11 +76,43 @@ TEST_F(RelaxOperationTest, PinnedScansKeepTheirPairwisePoses) {
   EXPECT_FALSE(run("relax", {{"pin", std::string("x")}}));
 }
 
-TEST_F(RelaxOperationTest, WithoutPairwisePosesItStartsFromOdometryAndWarns) {
+TEST_F(RelaxOperationTest, WithoutPairwisePosesItRegistersFirstAsOneEdit) {
+  ASSERT_TRUE(run("register", {}));
+  ASSERT_TRUE(run("relax", {}));
+  std::vector<Pose> in_two;
+  for (std::size_t i = 0; i < 4; ++i) in_two.push_back(pose(Stage::Relaxed, i));
+  const std::size_t links = project_->snapshot()->links().size();
+  ASSERT_TRUE(project_->undo());
+  ASSERT_TRUE(project_->undo());
+  ASSERT_FALSE(project_->snapshot()->hasStage(Stage::Pairwise));
+
   const auto result = run("relax", {});
-  ASSERT_TRUE(result);
-  EXPECT_FALSE(result->warnings.empty());
-  EXPECT_EQ(nlohmann::json::parse(result->report_json)["start"], "odometry");
+  ASSERT_TRUE(result) << result.error().what;
+  ASSERT_EQ(result->warnings.size(), 1U);
+  EXPECT_EQ(nlohmann::json::parse(result->report_json)["registered_first"], true);
+  EXPECT_TRUE(project_->snapshot()->hasStage(Stage::Pairwise));
+  EXPECT_EQ(project_->snapshot()->links().size(), links);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(in_two[i].translation(), pose(Stage::Relaxed, i).translation());
+  ASSERT_TRUE(project_->undo());
+  EXPECT_FALSE(project_->snapshot()->hasStage(Stage::Pairwise));
+  EXPECT_FALSE(project_->snapshot()->hasStage(Stage::Relaxed));
+  EXPECT_TRUE(project_->snapshot()->links().empty());
+}
+
+TEST_F(RelaxOperationTest, RelaxingAgainGivesTheSameAndDoublesNoLink) {
+  ASSERT_TRUE(run("register", {}));
+  ASSERT_TRUE(run("relax", {}));
+  const std::size_t links = project_->snapshot()->links().size();
+  const Pose once = pose(Stage::Relaxed, 3);
+  ASSERT_TRUE(run("relax", {}));
+  EXPECT_EQ(project_->snapshot()->links().size(), links);
+  EXPECT_EQ(pose(Stage::Relaxed, 3).translation(), once.translation());
+  // The thesis' method finds none, so what the other found does not stand for its poses.
+  ASSERT_TRUE(run("relax", {}, "thesis"));
+  EXPECT_EQ(project_->snapshot()->links().size(), 3U);
+  ASSERT_TRUE(project_->undo());
+  EXPECT_EQ(project_->snapshot()->links().size(), links);
 }
 
 TEST_F(RelaxOperationTest, ADisabledPairIsLeftOut) {
