@@ -71,6 +71,8 @@ Status makeSurvey(Context& context, Project& project, const DemoWords& words, co
   if (!simulated) return fail(simulated.error());
   auto registered = runStep(context, project, "register", {}, "Registering each scan to the one before ...");
   if (!registered) return fail(registered.error());
+  auto relaxed = runStep(context, project, "relax", {}, "Spreading the errors over all scans ...");
+  if (!relaxed) return fail(relaxed.error());
   auto written = runStep(context, project, "export", {{"file", files.map.string()}}, "Writing the map ...");
   if (!written) return fail(written.error());
   return {};

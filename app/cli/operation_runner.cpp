@@ -31,7 +31,8 @@ Result<OperationResult> runOperation(Context& context, Project& project, const s
 
 int operationCommand(Context& context, const std::string& project_path, const std::string& operation,
                      const std::string& preset, const ParameterValues& values,
-                     const std::function<std::string(const nlohmann::json&)>& text, Access access) {
+                     const std::function<std::string(const nlohmann::json&)>& text, Access access,
+                     const std::function<nlohmann::json(const nlohmann::json&)>& as_json) {
   auto project = Project::open(project_path, access);
   if (!project) return context.console.failed(project.error());
   auto outcome = runOperation(context, **project, operation, preset, values);
@@ -40,7 +41,7 @@ int operationCommand(Context& context, const std::string& project_path, const st
   nlohmann::json report =
       outcome->report_json.empty() ? nlohmann::json::object() : nlohmann::json::parse(outcome->report_json);
   report["warnings"] = warningsJson(outcome->warnings);
-  context.console.printJson(report);
+  context.console.printJson(as_json ? as_json(report) : report);
   context.console.print(text(report));
   return kDone;
 }

@@ -14,11 +14,12 @@ Result<OperationResult> runOperation(Context& context, Project& project, const s
                                      const std::string& preset, const ParameterValues& values);
 
 // The same as a whole command: opens the project, runs, shows warnings, prints `text(report)` or the report
-// as JSON with its warnings, and returns the exit code.
+// as JSON (what `as_json` makes of it, where given) with its warnings, and returns the exit code.
 int operationCommand(Context& context, const std::string& project_path, const std::string& operation,
                      const std::string& preset, const ParameterValues& values,
                      const std::function<std::string(const nlohmann::json&)>& text,
-                     Access access = Access::ReadWrite);
+                     Access access = Access::ReadWrite,
+                     const std::function<nlohmann::json(const nlohmann::json&)>& as_json = {});
 
 // A reading command's snapshot.
 Result<SnapshotPtr> readProject(const std::string& path);

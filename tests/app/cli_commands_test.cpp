@@ -1,5 +1,6 @@
 // The commands as scripts call them: every key that scripts rely on, and results that are there and right.
 #include <cmath>
+#include <map>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -34,8 +35,8 @@ TEST_F(Cli, HelpAndVersionNeedNoProject) {
   EXPECT_NE(run({"--version"}).out.find("tiltmap 0."), std::string::npos);
   const ProgramRun help = run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command :
-       {"new", "simulate", "import", "info", "register", "poses", "evaluate", "export", "parameters", "demo"})
+  for (const char* command : {"new", "simulate", "import", "info", "register", "relax", "poses", "evaluate",
+                              "export", "parameters", "demo"})
     EXPECT_NE(help.out.find(command), std::string::npos) << command;
   EXPECT_NE(run({"register", "--help"}).out.find("--max-distance"), std::string::npos);
 }
@@ -184,6 +185,94 @@ TEST_F(Cli, ParametersAreListedWithEverything) {
   EXPECT_EQ(run({"parameters", "registre"}).exit_code, 2);
 }
 
+TEST_F(Cli, RelaxationHasItsKeysAndIsTheLatestStage) {
+  simulate("exp1");
+  ASSERT_EQ(run({"register", "p.tiltmap"}).exit_code, 0);
+  const json before = object({"evaluate", "p.tiltmap"});
+  const json registered = object({"info", "p.tiltmap"});
+  const json relaxed = object({"relax", "p.tiltmap", "--threads", "2"});
+  std::vector<std::string> keys;
+  for (const auto& entry : relaxed.items()) keys.push_back(entry.key());
+  EXPECT_EQ(keys, (std::vector<std::string>{"milliseconds", "moved", "unlinked", "warnings"}));
+  EXPECT_GT(relaxed["milliseconds"].get<double>(), 0.0);
+  EXPECT_TRUE(relaxed["unlinked"].empty());
+  EXPECT_TRUE(relaxed["warnings"].empty());
+  ASSERT_EQ(relaxed["moved"].size(), 5U);
+  for (std::size_t i = 0; i < 5; ++i) {
+    const json& moved = relaxed["moved"][i];
+    EXPECT_EQ(moved.size(), 3U);
+    EXPECT_EQ(moved["scan"], i);
+    EXPECT_EQ(moved["translation_m"].get<double>() > 0.0, i > 0) << moved;
+    EXPECT_EQ(moved["rotation_deg"].get<double>() > 0.0, i > 0) << moved;
+  }
+  const json after = object({"evaluate", "p.tiltmap"});
+  EXPECT_EQ(after["stage"], "relaxed");
+  EXPECT_LT(after["rmse_translation_m"].get<double>(), 0.010);
+  EXPECT_LT(after["rmse_rotation_deg"].get<double>(), 0.05);
+  EXPECT_LT(after["rmse_translation_m"].get<double>(), before["rmse_translation_m"].get<double>());
+
+  // Every command takes it as the latest.
+  const json poses = object({"poses", "p.tiltmap"});
+  EXPECT_EQ(poses["stage"], "relaxed");
+  EXPECT_EQ(poses, object({"poses", "p.tiltmap", "--stage", "relaxed"}));
+  EXPECT_NE(poses["poses"], object({"poses", "p.tiltmap", "--stage", "pairwise"})["poses"]);
+  ASSERT_EQ(run({"export", "p.tiltmap", "latest.xyz"}).exit_code, 0);
+  ASSERT_EQ(run({"export", "p.tiltmap", "relaxed.xyz", "--stage", "relaxed"}).exit_code, 0);
+  ASSERT_EQ(run({"export", "p.tiltmap", "pairwise.xyz", "--stage", "pairwise"}).exit_code, 0);
+  EXPECT_EQ(fileText(folder_.path() / "latest.xyz"), fileText(folder_.path() / "relaxed.xyz"));
+  EXPECT_NE(fileText(folder_.path() / "latest.xyz"), fileText(folder_.path() / "pairwise.xyz"));
+  const json info = object({"info", "p.tiltmap"});
+  EXPECT_EQ(info["stages"], json({"truth", "odometry", "pairwise", "relaxed"}));
+  EXPECT_GT(info["links"].size(), 4U);
+  for (const json& link : info["links"]) EXPECT_EQ(link["origin"], "automatic");
+
+  ASSERT_EQ(run({"undo", "p.tiltmap"}).exit_code, 0);
+  EXPECT_EQ(object({"info", "p.tiltmap"}), registered);
+  ASSERT_EQ(run({"redo", "p.tiltmap"}).exit_code, 0);
+  EXPECT_EQ(object({"info", "p.tiltmap"}), info);
+  EXPECT_EQ(object({"poses", "p.tiltmap"}), poses);
+}
+
+TEST_F(Cli, RelaxationKeepsPinsAndRecordsItsSteps) {
+  simulate("exp1");
+  ASSERT_EQ(run({"register", "p.tiltmap"}).exit_code, 0);
+  const json pinned = object({"relax", "p.tiltmap", "--pin", "0,3"});
+  EXPECT_EQ(pinned["moved"][3]["translation_m"], 0.0);
+  EXPECT_EQ(pinned["moved"][3]["rotation_deg"], 0.0);
+  EXPECT_GT(pinned["moved"][2]["translation_m"].get<double>(), 0.0);
+
+  const json thesis = object({"relax", "p.tiltmap", "--preset", "thesis", "--record"});
+  std::map<std::string, int> count;
+  for (const json& event : thesis["events"]) ++count[event["event"].get<std::string>()];
+  EXPECT_EQ(count["activated"], 5);
+  EXPECT_GE(count["queued"], 4);
+  EXPECT_GE(count["aligned"], 4);
+  EXPECT_EQ(count["moved by"], count["aligned"]);
+  EXPECT_EQ(count["finished"], 1);
+  const std::string told = run({"relax", "p.tiltmap", "--preset", "thesis", "--record"}).out;
+  EXPECT_NE(told.find("activated"), std::string::npos) << told;
+  EXPECT_NE(told.find("finished"), std::string::npos) << told;
+}
+
+TEST_F(Cli, RelaxationReportsAScanThatNothingLinks) {
+  simulate("exp1");
+  // A lump a few metres off and far above whatever the stops have seen.
+  std::string points;
+  for (int i = 0; i < 400; ++i)
+    points += std::to_string(0.01 * (i % 20)) + " " + std::to_string(0.01 * (i / 20)) + " 500\n";
+  writeFile(folder_.path() / "lump.xyz", points);
+  ASSERT_EQ(run({"import", "p.tiltmap", "lump.xyz"}).exit_code, 0);
+  ASSERT_EQ(run({"register", "p.tiltmap"}).exit_code, 0);
+  const json before = object({"poses", "p.tiltmap"});
+  for (const std::string preset : {"default", "thesis"}) {
+    const json relaxed = object({"relax", "p.tiltmap", "--preset", preset});
+    EXPECT_EQ(relaxed["unlinked"], json({5})) << preset;
+    EXPECT_EQ(relaxed["moved"][5]["translation_m"], 0.0);
+    EXPECT_FALSE(relaxed["warnings"].empty());
+    EXPECT_EQ(object({"poses", "p.tiltmap"})["poses"][5], before["poses"][5]);
+  }
+}
+
 TEST_F(Cli, UndoRedoAndHistorySurviveReopening) {
   simulate("exp1");
   const json simulated = object({"info", "p.tiltmap"});
@@ -218,6 +307,12 @@ TEST_F(Cli, DemoMakesMapPictureAndReport) {
     const std::string head = fileText(folder_.path() / line.substr(expected[i].first.size())).substr(0, 400);
     EXPECT_NE(head.find(expected[i].second), std::string::npos) << line;
   }
+  const std::string report = fileText(folder_.path() / "demo/report.html");
+  EXPECT_NE(report.find("Stops after global relaxation"), std::string::npos);
+  EXPECT_NE(report.find("<h2>Relaxation</h2>"), std::string::npos);
+  EXPECT_NE(demo.err.find("relaxed"), std::string::npos) << demo.err;
+  EXPECT_EQ(object({"info", "demo/demo.tiltmap"})["stages"],
+            json({"truth", "odometry", "pairwise", "relaxed"}));
   // A second demo replaces its own files, but never a project of somebody's.
   EXPECT_EQ(run({"demo", "--out", "demo", "--experiment", "exp1"}).exit_code, 0);
   std::filesystem::create_directory(folder_.path() / "mine");

@@ -43,6 +43,9 @@ TEST_F(CliErrors, WrongUsageIsTwoAndNamesTheNearest) {
   refused({"register", "p.tiltmap", "--max-distance", "-1"}, 2, "max-distance");
   refused({"register", "p.tiltmap", "--motion", "magic"}, 2, "svd");
   refused({"register", "p.tiltmap", "--preset", "thessis"}, 2, "thesis");
+  refused({"relax", "p.tiltmap", "--max-visit", "3"}, 2, "--max-visits");
+  refused({"relax", "p.tiltmap", "--preset", "thessis"}, 2, "thesis");
+  refused({"relax", "p.tiltmap", "--threads", "-1"}, 2, "threads");
   refused({"simulate", "p.tiltmap", "--experiment", "exp9"}, 2, "exp1");
   refused({"poses", "p.tiltmap", "--format", "xml"}, 2, "tum");
   refused({"export", "p.tiltmap", "o.ply", "--raw", "--reduced"}, 2, "--raw");
@@ -57,6 +60,8 @@ TEST_F(CliErrors, FailuresAreOneAndSayWhatToDo) {
   refused({"new", "p.tiltmap"}, 1, "p.tiltmap");
   refused({"new", "no/such/folder/p.tiltmap"}, 1, "no/such/folder");
   refused({"register", "p.tiltmap"}, 1, "two scans");
+  refused({"relax", "p.tiltmap"}, 1, "two scans");
+  refused({"relax", "missing.tiltmap"}, 1, "missing.tiltmap");
   refused({"export", "p.tiltmap", "map.ply"}, 1, "no scans");
   refused({"evaluate", "p.tiltmap"}, 1, "");
   refused({"import", "p.tiltmap", "missing.pcd"}, 1, "missing.pcd");
@@ -78,6 +83,9 @@ TEST_F(CliErrors, ARefusedCommandLeavesTheProjectAsItWas) {
   refused({"register", "p.tiltmap", "--pairs", "0:9"}, 1, "0:9");
   refused({"register", "p.tiltmap", "--pairs", "1:1"}, 1, "1:1");
   refused({"register", "p.tiltmap", "--pairs", "one"}, 1, "one");
+  refused({"relax", "p.tiltmap", "--pin", "0,9"}, 1, "9");
+  refused({"relax", "p.tiltmap", "--pin", "one"}, 1, "one");
+  refused({"relax", "p.tiltmap", "--preset", "thesis", "--method", "joint"}, 1, "closed forms");
   refused({"simulate", "p.tiltmap", "--experiment", "exp1"}, 1, "already");
   refused({"export", "p.tiltmap", "map.stl"}, 1, "stl");
   refused({"export", "p.tiltmap", "map.ply", "--stage", "relaxed"}, 1, "relaxed");
@@ -92,6 +100,21 @@ TEST_F(CliErrors, QuietSaysNothingButResults) {
   const ProgramRun result = run({"simulate", "p.tiltmap", "--experiment", "exp1", "--quiet"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_TRUE(result.err.empty()) << result.err;
+}
+
+TEST_F(CliErrors, InterruptedRelaxationChangesNothing) {
+  ASSERT_EQ(run({"new", "p.tiltmap"}).exit_code, 0);
+  ASSERT_EQ(run({"simulate", "p.tiltmap", "--experiment", "exp2fixed"}).exit_code, 0);
+  ASSERT_EQ(run({"register", "p.tiltmap"}).exit_code, 0);
+  const std::string before = info();
+  // The thesis' method takes seconds, so the signal comes in the middle.
+  const pid_t child = startTiltmap({"relax", "p.tiltmap", "--preset", "thesis"}, folder_.path());
+  usleep(400'000);
+  ASSERT_EQ(kill(child, SIGINT), 0);
+  const ProgramRun stopped = waitForTiltmap(child, folder_.path());
+  EXPECT_EQ(stopped.exit_code, 1) << stopped.err;
+  EXPECT_NE(stopped.err.find("cancelled"), std::string::npos) << stopped.err;
+  EXPECT_EQ(info(), before);
 }
 
 TEST_F(CliErrors, InterruptStopsCleanly) {
