@@ -46,6 +46,23 @@ int operationCommand(Context& context, const std::string& project_path, const st
   return kDone;
 }
 
+int editCommand(Context& context, const std::string& project_path,
+                const std::function<Result<ProjectEdit>(const SnapshotPtr&)>& make,
+                const std::vector<std::string>* warnings) {
+  auto project = Project::open(project_path, Access::ReadWrite);
+  if (!project) return context.console.failed(project.error());
+  const auto edit = make((*project)->snapshot());
+  if (!edit) return context.console.failed(edit.error());
+  const auto change = (*project)->apply(*edit);
+  if (!change) return context.console.failed(change.error());
+  const std::vector<std::string> remarks = warnings ? *warnings : std::vector<std::string>();
+  for (const std::string& warning : remarks) context.console.warn(warning);
+  context.console.printJson(
+      {{"done", edit->title}, {"revision", change->revision}, {"warnings", warningsJson(remarks)}});
+  context.console.print("done: " + edit->title);
+  return kDone;
+}
+
 Result<SnapshotPtr> readProject(const std::string& path) {
   return Project::open(path, Access::ReadOnly).map([](const std::unique_ptr<Project>& project) {
     return project->snapshot();
