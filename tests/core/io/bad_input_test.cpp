@@ -178,6 +178,12 @@ std::vector<BadFile> badFiles() {
   add("OnlyNan", ply,
       replaced(replaced(replaced(p, "1 2 3", "nan 2 3"), "4 5 6", "nan 5 6"), "7 8", "nan 8"));
 
+  add("OnlyInfinity", ply,
+      replaced(replaced(replaced(p, "1 2 3", "inf 2 3"), "4 5 6", "4 -inf 6"), "7 8", "inf 8"));
+  add("WrongCount", ply, replaced(p, "vertex 3", "vertex 2"));
+  add("WrongCountBinary", ply, replaced(pl, "vertex 3", "vertex 2"), ", byte");
+  add("CutInsideAPoint", ply, p.substr(0, p.find("8 9.5")), ":14");
+
   const ScanFormat ptx_format = ScanFormat::Ptx;
   const std::string x = ptx();
   add("HeaderOnly", ptx_format, ptxHeader());
@@ -200,6 +206,14 @@ std::vector<BadFile> badFiles() {
   add("MatrixZero", ptx_format, replaced(x, "1 2 3 1\n", "1 2 3 0\n"), ":10");
   add("OnlyEmptyCells", ptx_format,
       ptxHeader() + "0 0 0 0.5\n0 0 0 0.5\n0 0 0 0.5\n0 0 0 0.5\n0 0 0 0.5\n0 0 0 0.5\n");
+
+  add("OnlyNan", ptx_format,
+      ptxHeader() + "nan 1 1 0.5\n1 nan 1 0.5\n1 1 nan 0.5\n0 0 0 0.5\n0 0 0 0.5\n0 0 0 0.5\n");
+  add("OnlyInfinity", ptx_format,
+      ptxHeader() + "inf 1 1 0.5\n1 -inf 1 0.5\n1 1 inf 0.5\n0 0 0 0.5\n0 0 0 0.5\n0 0 0 0.5\n");
+  add("WordForCount", ptx_format, "three" + x.substr(1), ":1");
+  add("BrokenCount", ptx_format, "3.5" + x.substr(1), ":1");
+  add("FarAway", ptx_format, replaced(x, "2 2 3 0.3", "2 1e12 3 0.3"));
 
   const ScanFormat vtk = ScanFormat::Vtk;
   const std::string v = asciiVtk(), vb = binaryVtk();
@@ -231,6 +245,11 @@ std::vector<BadFile> badFiles() {
   add("HugeField", vtk, v + "FIELD f 999999999999\n");
   add("HugeComponents", vtk, v + "FIELD f 1\na 99999999999 99999999999 float\n");
 
+  add("OnlyNan", vtk, replaced(replaced(v, "1 2 3 4 5 6", "nan 2 3 4 nan 6"), "7 8 9.5", "7 8 nan"));
+  add("OnlyInfinity", vtk, replaced(replaced(v, "1 2 3 4 5 6", "inf 2 3 4 -inf 6"), "7 8 9.5", "7 8 inf"));
+  add("WordForCount", vtk, replaced(v, "POINTS 3", "POINTS three"));
+  add("FarAway", vtk, replaced(v, "4 5 6", "4 1e12 6"));
+
   const ScanFormat uos_format = ScanFormat::Uos;
   const std::string u = uos();
   add("CountOnly", uos_format, "3\n");
@@ -248,6 +267,7 @@ std::vector<BadFile> badFiles() {
   add("Overflow", uos_format, replaced(u, "400 600", "400 1e999"), ":3");
   add("FarAway", uos_format, replaced(u, "400 600", "400 1e200"));
   add("OnlyNan", uos_format, "nan nan nan\n");
+  add("OnlyInfinity", uos_format, "inf 1 1\n1 -inf 1\n");
   add("OnlyOrigin", uos_format, "0 0 0\n0 0 0\n");
 
   const ScanFormat xyz_format = ScanFormat::Xyz;
@@ -275,6 +295,10 @@ std::vector<BadFile> badFiles() {
   add("HugeCount", xyz_format, "1000000000000" + t.substr(1), ":1");
   add("NegativeCount", xyz_format, "-3" + t.substr(1), ":1");
   add("OnlyNan", xyz_format, "nan nan nan\n");
+  add("OnlyInfinity", xyz_format, "inf 1 1\n1 -inf 1\n1 1 inf\n");
+  add("CsvOnlyNan", xyz_format, "x,y,z\nnan,1,1\n");
+  add("FarAway", xyz_format, replaced(t, "4 5 6", "4 1e12 6"));
+  add("BinaryAfterTheFirstLine", xyz_format, "1 2 3\n" + noise(300, 2), ":2");
   return list;
 }
 
@@ -345,6 +369,24 @@ TEST_P(TextFile, CarriageReturnsBeforeSomeLineEndsAreFine) {
   const TemporaryFolder folder;
   const auto result = readScans(folder.write("mixed.dat", bytes), {GetParam().format, 0.0, 0.0});
   EXPECT_TRUE(result) << result.error().what << " " << result.error().where;
+}
+
+// NaN and infinity stand for a cell without a point; the others are kept.
+TEST_P(TextFile, APointThatIsNotFiniteIsNoPoint) {
+  const std::string bytes = GetParam().bytes;
+  const bool centimetres = GetParam().format == ScanFormat::Uos,
+             ptx_file = GetParam().format == ScanFormat::Ptx;
+  std::string from = centimetres ? "400 600 500" : ptx_file ? "2 2 3 0.3" : "4 5 6";
+  if (GetParam().name == std::string("Csv")) from = "5,4,6";
+  for (const std::string word : {"nan", "inf", "-inf"}) {
+    std::string to = from;
+    to.replace(0, to.find_first_of(" ,"), word);
+    const TemporaryFolder folder;
+    const auto result =
+        readScans(folder.write("one.dat", replaced(bytes, from, to)), {GetParam().format, 0.0, 0.0});
+    ASSERT_TRUE(result) << word << ": " << result.error().what << " " << result.error().where;
+    EXPECT_EQ(result->scans[0].scan.image->validCells(), ptx_file ? 4U : 2U) << word;
+  }
 }
 
 TEST_P(Broken, CutAnywhereItIsRefused) {
