@@ -1,5 +1,7 @@
 #include "app/cli/operation_runner.h"
 
+#include <filesystem>
+
 #include "core/project/job.h"
 
 namespace tiltmap::cli {
@@ -61,6 +63,14 @@ int editCommand(Context& context, const std::string& project_path,
       {{"done", edit->title}, {"revision", change->revision}, {"warnings", warningsJson(remarks)}});
   context.console.print("done: " + edit->title);
   return kDone;
+}
+
+Status checkOutput(const std::string& file, const std::string& project_path) {
+  std::error_code ignored;
+  const std::string extension = std::filesystem::path(file).extension().string();
+  if (extension.starts_with(".tiltmap") || std::filesystem::equivalent(file, project_path, ignored))
+    return fail("this is the name of a project, which is never replaced", file, "choose another name");
+  return {};
 }
 
 Result<SnapshotPtr> readProject(const std::string& path) {

@@ -27,6 +27,9 @@ int editCommand(Context& context, const std::string& project_path,
                 const std::function<Result<ProjectEdit>(const SnapshotPtr&)>& make,
                 const std::vector<std::string>* warnings = nullptr);
 
+// Refuses a file name that a project has or may have: results of another kind never replace one.
+Status checkOutput(const std::string& file, const std::string& project_path);
+
 // A reading command's snapshot.
 Result<SnapshotPtr> readProject(const std::string& path);
 

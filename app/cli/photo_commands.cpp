@@ -40,6 +40,8 @@ int listPhotographs(Context& context, const PhotoWords& words) {
 }
 
 int savePhotograph(Context& context, const PhotoWords& words) {
+  if (Status status = checkOutput(words.file, words.project); !status)
+    return context.console.failed(status.error());
   auto snapshot = readProject(words.project);
   if (!snapshot) return context.console.failed(snapshot.error());
   const auto contents = photographContents(**snapshot, words.photograph);

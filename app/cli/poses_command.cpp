@@ -44,6 +44,8 @@ int printPoses(Context& context, const PosesWords& words) {
   if (words.many() && words.out.empty())
     return context.console.wrongUsage({"the format " + words.format + " has one file a scan", "tiltmap poses",
                                        "name a folder for them with --out"});
+  if (Status status = checkOutput(words.out, words.project); !status)
+    return context.console.failed(status.error());
   auto snapshot = readProject(words.project);
   if (!snapshot) return context.console.failed(snapshot.error());
   auto stage = stageOrLatest(**snapshot, words.stage);

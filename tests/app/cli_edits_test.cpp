@@ -120,6 +120,14 @@ TEST_F(CliEdits, PhotographsGoInAndComeOutByteForByte) {
 
   refused({"photo", "save", "p.tiltmap", id, "gone.jpg"}, 1, id);
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "gone.jpg"));
+  // A picture or a list never takes a project's place.
+  const std::string other =
+      std::to_string(object({"photo", "list", "p.tiltmap"})["photographs"][0]["id"].get<int>());
+  std::filesystem::create_symlink("p.tiltmap", folder_.path() / "link.jpg");
+  for (const char* name : {"p.tiltmap", "new.tiltmap", "p.tiltmap-wal", "link.jpg"}) {
+    refused({"photo", "save", "p.tiltmap", other, name}, 1, name);
+    refused({"poses", "p.tiltmap", "--format", "tum", "--out", name}, 1, name);
+  }
   refused({"photo", "add", "p.tiltmap", "0", "a.xyz"}, 1, "not a picture");
   refused({"photo", "add", "p.tiltmap", "0", "none.jpg"}, 1, "none.jpg");
   refused({"photo", "add", "p.tiltmap", "5", "out.jpg"}, 1, "5");
