@@ -223,6 +223,9 @@ std::vector<BadFile> badFiles() {
   add("TooShort", vtk, replaced(v, "30\n", ""), ", byte");
   add("TooLong", vtk, v + "40\n", ", byte");
   add("BinaryTooShort", vtk, vb.substr(0, vb.size() - 3), ", byte");
+  const std::string only_points =
+      vtkHeader("BINARY") + packedBigEndian(1.F, 2.F, 3.F, 4.F, 5.F, 6.F, 7.F, 8.F, 9.5F);
+  add("BinaryOneByteShort", vtk, only_points.substr(0, only_points.size() - 1));
   add("BinaryTooLong", vtk, vb + "abc", ", byte");
   add("AsciiCalledBinary", vtk, replaced(v, "ASCII", "BINARY"));
   add("BinaryCalledAscii", vtk, replaced(vb, "BINARY", "ASCII"));
