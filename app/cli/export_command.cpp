@@ -1,5 +1,4 @@
-// tiltmap export P.tiltmap OUT.ply|pcd|ptx|3d|vtk|xyz|csv [--stage S] [--raw|--reduced] [--scans 0-5]
-// [--per-scan]
+// tiltmap export P.tiltmap OUT.ply|pcd|xyz [--stage S] [--raw|--reduced] [--scans 0-5]
 #include "app/cli/operation_runner.h"
 
 namespace tiltmap::cli {
@@ -11,9 +10,8 @@ void addExport(CLI::App& app, Chosen& chosen) {
   auto file = std::make_shared<std::string>();
   command->add_option("project", *path, "The project")->required();
   command
-      ->add_option(
-          "file", *file,
-          "Where to write; the extension says the format: ply, pcd, ptx, 3d, vtk, xyz, txt, asc or csv")
+      ->add_option("file", *file,
+                   "Where to write; the extension says the format: ply, pcd, xyz, csv, ptx, vtk")
       ->required();
   std::vector<ParameterInfo> infos = operations().find("export")->parameters();
   std::erase_if(infos, [](const ParameterInfo& info) { return info.name == "file"; });
@@ -28,9 +26,7 @@ void addExport(CLI::App& app, Chosen& chosen) {
       return operationCommand(
           context, *path, "export", "default", *values,
           [](const nlohmann::json& report) {
-            const std::size_t files = report["files"].size();
-            return "wrote " + report["file"].get<std::string>() +
-                   (files > 1 ? " and " + std::to_string(files - 1) + " more" : "") + " (" +
+            return "wrote " + report["file"].get<std::string>() + " (" +
                    std::to_string(report["scans"].get<int>()) +
                    " scans, poses: " + report["stage"].get<std::string>() + ")";
           },

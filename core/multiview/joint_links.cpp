@@ -12,11 +12,22 @@ namespace tiltmap {
 
 namespace {
 
-double medianOf(std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
+// The value that stands at a quarter of the pairs of all used links; 0 where none is used.
+double lowerQuarter(std::span<const JointLink> links, double JointLink::*value) {
+  std::vector<std::pair<double, std::size_t>> values;
+  std::size_t total = 0;
+  for (const JointLink& link : links) {
+    if (!link.used) continue;
+    values.emplace_back(link.*value, link.pairs);
+    total += link.pairs;
+  }
+  std::ranges::sort(values);
+  std::size_t passed = 0;
+  for (const auto& [of_link, pairs] : values) {
+    passed += pairs;
+    if (4 * passed >= total) return of_link;
+  }
+  return 0.0;
 }
 
 // h and b without the directions that the surfaces leave free: noise there must not pull.
@@ -41,7 +52,7 @@ void takeStrongDirections(const LinearSystem& system, const Conditioning& condit
 
 JointLink measureLink(int fixed, int moving, const Pose& fixed_from_moving,
                       std::span<const PreparedScanPtr> scans, const Samples& samples,
-                      const RegistrationSettings& settings, double loss_scale_m) {
+                      const RegistrationSettings& settings, const LossScale& loss) {
   const auto first = static_cast<std::size_t>(fixed), second = static_cast<std::size_t>(moving);
   JointLink link;
   link.fixed = fixed;
@@ -53,19 +64,21 @@ JointLink measureLink(int fixed, int moving, const Pose& fixed_from_moving,
   std::vector<Correspondence> pairs;
   const RejectionCounts counts =
       findPairs(*scans[first], *scans[second], link.fixed_from_moving, samples[first], samples[second],
-                loss_scale_m, settings, rejection, pairs);
+                loss.scale_m, settings, rejection, pairs);
   link.pairs = counts[static_cast<std::size_t>(RejectReason::None)];
   if (link.pairs < static_cast<std::size_t>(settings.min_pairs)) return link;
 
   const Metric metric = metricOf(settings.motion, settings.reduction == Reduction::Patches);
   LinearSystem system;
-  std::vector<double> residuals;
+  Residuals residuals;
   linearise(metric, scans[first]->elements, scans[second]->elements, Pose(), link.fixed_from_moving, pairs,
-            settings, loss_scale_m, system, &residuals);
+            settings, loss, system, &residuals);
   link.loss_weight = system.loss_weight;
   const double square = system.loss_weight > 0.0 ? system.loss_square_m2 / system.loss_weight : 0.0;
   link.rms_m = std::sqrt(square);
-  link.median_m = medianOf(residuals);
+  link.median_m = residuals.size_m.empty() ? 0.0 : medianOf(residuals.size_m);
+  if (metric == Metric::PatchToPatch)
+    link.excess_m = excessDeviation(residuals.size_m, residuals.variance_m2);
   std::size_t common = 0;
   for (const Correspondence& pair : pairs)
     if (!pair.from_fixed && pair.reason != RejectReason::NoPartner) ++common;
@@ -87,7 +100,7 @@ JointLink measureLink(int fixed, int moving, const Pose& fixed_from_moving,
 std::vector<JointLink> measureLinks(std::span<const std::pair<int, int>> candidates,
                                     std::span<const PreparedScanPtr> scans, const Samples& samples,
                                     std::span<const Pose> world_from_scan,
-                                    const RegistrationSettings& settings, double loss_scale_m, int threads,
+                                    const RegistrationSettings& settings, const LossScale& loss, int threads,
                                     const std::stop_token& stop) {
   std::vector<JointLink> links(candidates.size());
   parallelFor(candidates.size(), threads, [&](std::size_t k) {
@@ -95,26 +108,17 @@ std::vector<JointLink> measureLinks(std::span<const std::pair<int, int>> candida
     const auto [fixed, moving] = candidates[k];
     const Pose relative = world_from_scan[static_cast<std::size_t>(fixed)].inverse() *
                           world_from_scan[static_cast<std::size_t>(moving)];
-    links[k] = measureLink(fixed, moving, relative, scans, samples, settings, loss_scale_m);
+    links[k] = measureLink(fixed, moving, relative, scans, samples, settings, loss);
   });
   return links;
 }
 
 double ownResidual(std::span<const JointLink> links) {
-  std::vector<std::pair<double, std::size_t>> medians;
-  std::size_t total = 0;
-  for (const JointLink& link : links) {
-    if (!link.used) continue;
-    medians.emplace_back(link.median_m, link.pairs);
-    total += link.pairs;
-  }
-  std::ranges::sort(medians);
-  std::size_t passed = 0;
-  for (const auto& [median, pairs] : medians) {
-    passed += pairs;
-    if (4 * passed >= total) return median;
-  }
-  return 0.0;
+  return lowerQuarter(links, &JointLink::median_m);
+}
+
+double ownExcess(std::span<const JointLink> links) {
+  return lowerQuarter(links, &JointLink::excess_m);
 }
 
 }  // namespace tiltmap

@@ -54,9 +54,9 @@ class JointRelaxation : public RelaxationEngine {
       : RelaxationEngine(std::move(input), settings, threads) {
     const RegistrationSettings& r = settings_.registration;
     for (const PreparedScanPtr& scan : input_.scans) samples_.push_back(sampledElements(scan->elements, r));
-    scale_m_ = r.loss == Loss::Annealed ? r.loss_end_m : r.loss == Loss::GemanMcClure ? r.loss_scale_m : 0.0;
+    loss_ = r.loss == Loss::Annealed ? r.loss_end_m : r.loss == Loss::GemanMcClure ? r.loss_scale_m : 0.0;
     own_scale_steps_left_ = r.loss == Loss::Annealed ? kOwnScaleSteps : 0;
-    widest_m_ = scale_m_;
+    widest_m_ = loss_.scale_m;
     tied_.assign(poses_.size(), 0);
   }
 
@@ -70,7 +70,7 @@ class JointRelaxation : public RelaxationEngine {
     const bool settling = own_scale_steps_left_ == 0;
     if (!settling || candidates_.empty()) findCandidates(report);
     std::vector<JointLink> links = measureLinks(candidates_, input_.scans, samples_, poses_,
-                                                settings_.registration, scale_m_, threads_, stop);
+                                                settings_.registration, loss_, threads_, stop);
     if (stop.stop_requested()) return cancel(report);
     if (settling) keepChoice(links);
     links_ = std::move(links);
@@ -119,7 +119,7 @@ class JointRelaxation : public RelaxationEngine {
     findCandidates(report);
     if (rounds_ == 0) takeOwnScale(stop);
     std::vector<JointLink> links = measureLinks(candidates_, input_.scans, samples_, poses_,
-                                                settings_.registration, scale_m_, threads_, stop);
+                                                settings_.registration, loss_, threads_, stop);
     std::map<std::pair<int, int>, Attempt> attempts = attempts_;
     registerMisfits(links, attempts, report, stop);
     if (stop.stop_requested()) {
@@ -161,10 +161,10 @@ class JointRelaxation : public RelaxationEngine {
     for (const auto& pair : candidates_)
       if (pair.second == pair.first + 1) in_time.push_back(pair);
     const std::vector<JointLink> links =
-        measureLinks(in_time, input_.scans, samples_, poses_, r, scale_m_, threads_, stop);
+        measureLinks(in_time, input_.scans, samples_, poses_, r, loss_, threads_, stop);
     const double median = ownResidual(links);
-    if (median > 0.0) scale_m_ = std::clamp(2.0 * median, r.loss_minimum_m, r.loss_end_m);
-    widest_m_ = scale_m_;
+    if (median > 0.0) loss_ = std::clamp(2.0 * median, r.loss_minimum_m, r.loss_end_m);
+    widest_m_ = loss_.scale_m;
   }
 
   void registerMisfits(const std::vector<JointLink>& links, std::map<std::pair<int, int>, Attempt>& attempts,
@@ -211,7 +211,7 @@ class JointRelaxation : public RelaxationEngine {
     attempt.succeeded = false;
     if (!isSuccess(attempt.reason)) return;
     attempt.found = measureLink(link.fixed, link.moving, registration.fixedFromMoving(), input_.scans,
-                                samples_, settings_.registration, scale_m_);
+                                samples_, settings_.registration, loss_);
     const PoseDifference off = difference(link.fixed_from_moving, attempt.found.fixed_from_moving);
     attempt.succeeded = attempt.found.used && off.translation_m <= kLinkError_m * attempt.links_between &&
                         off.rotation_rad <= kLinkError_rad * attempt.links_between;
@@ -321,7 +321,7 @@ class JointRelaxation : public RelaxationEngine {
       square += link.loss_weight * link.rms_m * link.rms_m;
     }
     solved.rms_m = weight > 0.0 ? std::sqrt(square / weight) : 0.0;
-    solved.loss_scale_m = scale_m_;
+    solved.loss_scale_m = loss_.scale_m;
   }
 
   // Not while a loop is still on the move: narrowing then drops links that would come to fit.
@@ -330,8 +330,12 @@ class JointRelaxation : public RelaxationEngine {
     if (moved_m > kNarrowBelow_m && ++waited_ <= kWaitAtMost) return;
     if (r.loss != Loss::Annealed || own_scale_steps_left_ == 0) return;
     --own_scale_steps_left_;
-    scale_m_ = std::clamp(kFinalScale * ownResidual(links_), r.loss_minimum_m,
-                          std::max(widest_m_, r.loss_minimum_m));
+    if (metricOf(r.motion, r.reduction == Reduction::Patches) == Metric::PatchToPatch) {
+      loss_ = LossScale::ofOwnDeviation(r.loss_deviations, std::min(ownExcess(links_), widest_m_));
+      return;
+    }
+    loss_ = std::clamp(kFinalScale * ownResidual(links_), r.loss_minimum_m,
+                       std::max(widest_m_, r.loss_minimum_m));
   }
 
   void end(RelaxationStep& report) {
@@ -404,7 +408,7 @@ class JointRelaxation : public RelaxationEngine {
   std::vector<std::pair<int, int>> candidates_;
   std::vector<JointLink> links_;
   std::vector<char> tied_;  // to scan 0 or a pin, at the last step
-  double scale_m_ = 0.0;
+  LossScale loss_;
   double widest_m_ = 0.0;  // of the loss scales of this data
   double last_rms_m_ = 0.0;
   int own_scale_steps_left_ = 0;

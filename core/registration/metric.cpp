@@ -106,20 +106,20 @@ void forKept(const SurfaceElements& fixed, const SurfaceElements& moving, const 
 struct Sums {
   LinearSystem& system;
   Accumulator accumulator;
-  double squared_scale = 0.0;
-  std::vector<double>* residuals = nullptr;
+  Residuals* residuals = nullptr;
 
   // Returns the loss's weight of a squared residual, and counts the pair.
-  double count(const Correspondence& pair, double square, double fitting_square) {
+  double count(const Correspondence& pair, double square, double fitting_square, double squared_scale,
+               double variance = 1.0) {
     const double w = gemanMcClureWeight(square, squared_scale);
     ++system.pairs;
-    system.loss_weight += w;
-    system.loss_square_m2 += w * square;
+    system.loss_weight += w / variance;
+    system.loss_square_m2 += w / variance * square;
     if (square <= fitting_square) {
       ++system.agreeing;
       if (!pair.from_fixed) ++system.agreeing_moving;
     }
-    if (residuals) residuals->push_back(std::sqrt(square));
+    if (residuals) residuals->size_m.push_back(std::sqrt(square));
     return w;
   }
   void addPlane(const Residual& residual, const Eigen::Vector3d& p, double w) {
@@ -152,19 +152,22 @@ Metric metricOf(MotionMethod motion, bool patches) {
 void linearise(Metric metric, const SurfaceElements& fixed, const SurfaceElements& moving,
                const Pose& common_from_fixed, const Pose& common_from_moving,
                std::span<const Correspondence> pairs, const RegistrationSettings& settings,
-               double loss_scale_m, LinearSystem& system, std::vector<double>* residuals_m) {
+               const LossScale& loss, LinearSystem& system, Residuals* residuals) {
   if (metric == Metric::PatchToPatch &&
       (fixed.shape.size() != fixed.size() || moving.shape.size() != moving.size()))
     throw std::logic_error("linearise: the patch metric needs patches");
-  if (residuals_m) residuals_m->clear();
-  Sums sums{system, {}, loss_scale_m * loss_scale_m, residuals_m};
+  if (metric != Metric::PatchToPatch && loss.isOwn())
+    throw std::logic_error("linearise: only patches know the deviation of their residuals");
+  if (residuals) residuals->size_m.clear(), residuals->variance_m2.clear();
+  Sums sums{system, {}, residuals};
+  const double squared_scale = loss.scale_m * loss.scale_m;
   const auto each = [&](auto&& body) {
     forKept(fixed, moving, common_from_fixed, common_from_moving, pairs, body);
   };
   switch (metric) {
     case Metric::PointToPoint:
       each([&](const Correspondence& pair, const Placed& e, const Eigen::Matrix3d&, const Eigen::Matrix3d&) {
-        const double w = sums.count(pair, (e.p - e.q).squaredNorm(), kFittingSquare);
+        const double w = sums.count(pair, (e.p - e.q).squaredNorm(), kFittingSquare, squared_scale);
         Residual plane = pointToPlane(e);
         plane.r = 0.0;
         if (pair.has_normals) sums.addPlane(plane, e.p, w);
@@ -173,7 +176,7 @@ void linearise(Metric metric, const SurfaceElements& fixed, const SurfaceElement
     case Metric::PointToPlane:
       each([&](const Correspondence& pair, const Placed& e, const Eigen::Matrix3d&, const Eigen::Matrix3d&) {
         const Residual plane = pointToPlane(e);
-        sums.addPlane(plane, e.p, sums.count(pair, plane.r * plane.r, kFittingSquare));
+        sums.addPlane(plane, e.p, sums.count(pair, plane.r * plane.r, kFittingSquare, squared_scale));
       });
       break;
     case Metric::PatchToPatch:
@@ -182,8 +185,11 @@ void linearise(Metric metric, const SurfaceElements& fixed, const SurfaceElement
         const Eigen::Vector3d d = e.p - e.q;
         const Residual plane = patchToPatch(e, fixed.shape[pair.fixed], moving.shape[pair.moving],
                                             rf.transpose() * d, rm.transpose() * d);
-        const double variance = plane.variance + sums.squared_scale;
-        const double w = sums.count(pair, plane.r * plane.r, 9.0 * variance);
+        const double variance = plane.variance + squared_scale;
+        const double loss_square =
+            loss.isOwn() ? loss.deviations * loss.deviations * variance : squared_scale;
+        const double w = sums.count(pair, plane.r * plane.r, 9.0 * variance, loss_square, variance);
+        if (residuals) residuals->variance_m2.push_back(plane.variance);
         sums.addPlane(plane, e.p, w / variance);
       });
       break;
@@ -193,7 +199,7 @@ void linearise(Metric metric, const SurfaceElements& fixed, const SurfaceElement
         const double epsilon = settings.gicp_epsilon;
         const Eigen::Matrix3d m =
             2.0 * epsilon * (discCovariance(e.nq, epsilon) + discCovariance(e.np, epsilon)).inverse();
-        const double w = sums.count(pair, d.dot(m * d), kFittingSquare);
+        const double w = sums.count(pair, d.dot(m * d), kFittingSquare, squared_scale);
         // The residual is d itself: J = (-[p]x, I).
         Eigen::Matrix<double, 3, 6> j;
         j << 0.0, e.p.z(), -e.p.y(), 1.0, 0.0, 0.0, -e.p.z(), 0.0, e.p.x(), 0.0, 1.0, 0.0, e.p.y(), -e.p.x(),
@@ -243,7 +249,7 @@ Vector6d solvedStep(const LinearSystem& system, const Conditioning& condition) {
 
 Result<Pose> closedFormStep(MotionMethod motion, const SurfaceElements& fixed, const SurfaceElements& moving,
                             const Pose& fixed_from_moving, std::span<const Correspondence> pairs,
-                            double loss_scale_m) {
+                            const LossScale& loss) {
   ClosedForm method = ClosedForm::Svd;
   switch (motion) {
     case MotionMethod::Svd:
@@ -266,9 +272,9 @@ Result<Pose> closedFormStep(MotionMethod motion, const SurfaceElements& fixed, c
     if (!pair.kept()) continue;
     model.push_back(fixed.position[pair.fixed]);
     data.push_back(moving.position[pair.moving]);
-    if (loss_scale_m > 0.0)
+    if (loss.scale_m > 0.0)
       weights.push_back(gemanMcClureWeight((fixed_from_moving * data.back() - model.back()).squaredNorm(),
-                                           loss_scale_m * loss_scale_m));
+                                           loss.scale_m * loss.scale_m));
   }
   return closedFormMotion(method, model, data, weights);
 }

@@ -7,6 +7,7 @@
 
 #include "core/base/result.h"
 #include "core/geometry/pose.h"
+#include "core/registration/loss_scale.h"
 #include "core/registration/registration_settings.h"
 #include "core/registration/rejection.h"
 #include "core/registration/surface_elements.h"
@@ -42,8 +43,8 @@ struct LinearSystem {
   Matrix6d h = Matrix6d::Zero();
   Vector6d b = Vector6d::Zero();
   std::size_t pairs = 0;            // used
-  double loss_weight = 0.0;         // sum of the loss's weights
-  double loss_square_m2 = 0.0;      // sum of the loss's weight times the squared residual
+  double loss_weight = 0.0;         // sum of the loss's weights (patches: over the residual's variance)
+  double loss_square_m2 = 0.0;      // sum of the same times the squared residual
   std::size_t agreeing = 0;         // residual within three deviations (points: 0.5 m)
   std::size_t agreeing_moving = 0;  // of those, found from the moving scan's side
   double plane_weight = 0.0;  // sum of the weights in h, their first and second moments in the common frame
@@ -52,13 +53,18 @@ struct LinearSystem {
   double slope_noise = 0.0;  // sum of the weights times the variance of the normals (patches)
 };
 
+struct Residuals {
+  std::vector<double> size_m;       // |residual|
+  std::vector<double> variance_m2;  // of it, from the two patches alone; empty for the other metrics
+};
+
 // Adds up the kept pairs at two poses into a common frame (pairwise: that of the fixed scan, its pose the
-// identity). loss_scale_m 0: no loss. `residuals_m`, where given, is replaced by |residual| of each kept
-// pair.
+// identity). `residuals`, where given, is replaced by those of the kept pairs. With a loss the variance of a
+// pair of patches grows by the square of the scale.
 void linearise(Metric metric, const SurfaceElements& fixed, const SurfaceElements& moving,
                const Pose& common_from_fixed, const Pose& common_from_moving,
                std::span<const Correspondence> pairs, const RegistrationSettings& settings,
-               double loss_scale_m, LinearSystem& system, std::vector<double>* residuals_m = nullptr);
+               const LossScale& loss, LinearSystem& system, Residuals* residuals = nullptr);
 
 // What the surfaces determine: h per unit weight, about the pairs' centre, rotations measured as displacement
 // at their root mean square distance from it. Dimensionless; 0 means free to slide or turn. Noisy normals let
@@ -77,6 +83,6 @@ Vector6d solvedStep(const LinearSystem& system, const Conditioning& condition);
 // a line.
 Result<Pose> closedFormStep(MotionMethod motion, const SurfaceElements& fixed, const SurfaceElements& moving,
                             const Pose& fixed_from_moving, std::span<const Correspondence> pairs,
-                            double loss_scale_m);
+                            const LossScale& loss);
 
 }  // namespace tiltmap

@@ -1,5 +1,6 @@
 #include "core/registration/pair_choice.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -10,6 +11,8 @@ namespace {
 
 constexpr std::uint32_t kNobody = 0xffffffffU;
 constexpr std::size_t kShootingCandidates = 12;
+constexpr double kSamePatch_m =
+    0.05;  // a patch seen in a direction and this near is not compared with others
 
 // One element of `from`, in the frame of `to`.
 struct Query {
@@ -73,13 +76,40 @@ std::uint32_t projective(const PreparedScan& to, const DirectionIndex& direction
   return best == kNobody ? any : best;
 }
 
+// How far a place is from a patch as a disc, squared: across its plane, and beyond its edge along it.
+double discDistance(const Eigen::Vector3d& d, const Eigen::Vector3d& normal, const PatchShape& shape) {
+  constexpr double kEdge = 1.7;  // a uniform patch ends at 3^(1/2) deviations
+  const double across = d.dot(normal);
+  const double u = std::max(0.0, std::abs(d.dot(shape.u)) - kEdge * shape.extent_u_m);
+  const double v = std::max(0.0, std::abs(d.dot(shape.v)) - kEdge * shape.extent_v_m);
+  return across * across + u * u + v * v;
+}
+
+// The same among the patches of a matrix, which are of very different sizes.
+std::uint32_t seenPatch(const PreparedScan& to, const Query& query, int reach, double min_cos,
+                        double enough_square) {
+  std::uint32_t best = kNobody, any = kNobody;
+  double best_square = std::numeric_limits<double>::infinity();
+  to.raster->around(query.position, reach, [&](std::uint32_t patch) {
+    if (any == kNobody) any = patch;
+    const Eigen::Vector3d& normal = to.elements.normal[patch];
+    if (normal.dot(query.normal) < min_cos) return true;
+    const double square =
+        discDistance(query.position - to.elements.position[patch], normal, to.elements.shape[patch]);
+    if (square < best_square) best_square = square, best = patch;
+    return best_square > enough_square;
+  });
+  return best == kNobody ? any : best;
+}
+
 }  // namespace
 
 void choosePairs(const PreparedScan& from, const PreparedScan& to, const Pose& to_from_from,
                  std::span<const std::uint32_t> sample, bool from_is_fixed, double loss_scale_m,
                  const RegistrationSettings& settings, std::vector<Correspondence>& pairs) {
   const bool by_direction = settings.pair_choice == PairChoice::Projective;
-  if (!to.elements.empty() && (by_direction ? !to.directions.has_value() : !to.tree.has_value()))
+  if (!to.elements.empty() &&
+      (by_direction ? !to.directions.has_value() && !to.raster.has_value() : !to.tree.has_value()))
     throw std::logic_error("choosePairs: the scan was not prepared for this pair choice");
   const bool wide = loss_scale_m > settings.wide_search_above_m;
   const auto& directions = wide ? to.wide_directions : to.directions;
@@ -87,6 +117,7 @@ void choosePairs(const PreparedScan& from, const PreparedScan& to, const Pose& t
   const Eigen::Vector3d shift = to_from_from.translation();
   const double min_cos = std::cos(settings.max_angle_rad);
   std::vector<KdTree::Neighbour> scratch;
+  const double enough_square = wide ? 0.0 : kSamePatch_m * kSamePatch_m;
   for (const std::uint32_t index : sample) {
     Query query{rotation * from.elements.position[index] + shift, rotation * from.elements.normal[index],
                 false};
@@ -104,7 +135,8 @@ void choosePairs(const PreparedScan& from, const PreparedScan& to, const Pose& t
           partner = normalShooting(to, query, scratch);
           break;
         case PairChoice::Projective:
-          partner = projective(to, *directions, query, min_cos);
+          partner = to.raster ? seenPatch(to, query, wide ? 3 : 1, min_cos, enough_square)
+                              : projective(to, *directions, query, min_cos);
           break;
       }
     }

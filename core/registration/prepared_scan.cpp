@@ -3,7 +3,8 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "core/registration/patches.h"
+#include "core/registration/block_patches.h"
+#include "core/registration/cube_patches.h"
 #include "core/scan/filters.h"
 #include "core/scan/normals.h"
 #include "core/scan/reduction.h"
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double kBucket_rad = 3.0 * kDegree;
 constexpr double kWideBucket_rad = 9.0 * kDegree;
+constexpr std::size_t kRangeSample = 7;  // one cell in so many tells the median range; a prime
 
 MedianFilterSettings filterSettings(const RegistrationSettings& settings) {
   MedianFilterSettings filter;
@@ -77,6 +79,41 @@ SurfaceElements pointElements(const RangeImage& image, const std::vector<Eigen::
   return elements;
 }
 
+// Whether to cut the scan into blocks of cells.
+bool takesBlocks(const RangeImage& image, const RegistrationSettings& settings) {
+  if (settings.reduction != Reduction::Patches || !image.isMatrix()) return false;
+  if (settings.patch_grouping != PatchGrouping::Auto) return settings.patch_grouping == PatchGrouping::Blocks;
+  std::size_t points = 0, near = 0;
+  for (std::size_t cell = 0; cell < image.cells(); cell += kRangeSample) {
+    if (!image.hasPoint(cell)) continue;
+    ++points;
+    if (static_cast<double>(image.range(cell)) < settings.patch_near_m) ++near;
+  }
+  return 2 * near < points;
+}
+
+// Elements and what they are found by.
+void derive(const RangeImage& image, const ScannerGeometry& geometry, const RegistrationSettings& settings,
+            PreparedScan& prepared) {
+  const bool projective = settings.pair_choice == PairChoice::Projective;
+  if (takesBlocks(image, settings)) {
+    BlockPatches blocks = blockPatches(image, geometry, settings);
+    prepared.elements = std::move(blocks.elements);
+    if (projective) prepared.raster = std::move(blocks.raster);
+  } else {
+    const std::vector<Eigen::Vector3d> points = cellPoints(image, geometry);
+    prepared.elements = settings.reduction == Reduction::Patches ? cubePatches(image, points, settings)
+                                                                 : pointElements(image, points, settings);
+  }
+  if (prepared.elements.empty()) return;
+  if (!projective)
+    prepared.tree.emplace(prepared.elements.position);
+  else if (!prepared.raster) {
+    prepared.directions.emplace(prepared.elements.position, kBucket_rad);
+    prepared.wide_directions.emplace(prepared.elements.position, kWideBucket_rad);
+  }
+}
+
 }  // namespace
 
 PreparedScanPtr prepare(const Scan& scan, const RegistrationSettings& settings) {
@@ -96,20 +133,7 @@ PreparedScanPtr prepare(const Scan& scan, const RegistrationSettings& settings) 
       prepared->warnings.emplace_back("the scan is no matrix, so the median filter was not applied");
     }
   }
-  if (image->validCells() > 0) {
-    const std::vector<Eigen::Vector3d> points = cellPoints(*image, scan.geometry);
-    prepared->elements = settings.reduction == Reduction::Patches
-                             ? planePatches(*image, scan.geometry, points, settings)
-                             : pointElements(*image, points, settings);
-  }
-  if (!prepared->elements.empty()) {
-    if (settings.pair_choice == PairChoice::Projective) {
-      prepared->directions.emplace(prepared->elements.position, kBucket_rad);
-      prepared->wide_directions.emplace(prepared->elements.position, kWideBucket_rad);
-    } else {
-      prepared->tree.emplace(prepared->elements.position);
-    }
-  }
+  if (image->validCells() > 0) derive(*image, scan.geometry, settings, *prepared);
   prepared->milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   return prepared;

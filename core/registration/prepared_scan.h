@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/registration/direction_index.h"
+#include "core/registration/patch_raster.h"
 #include "core/registration/registration_settings.h"
 #include "core/registration/surface_elements.h"
 #include "core/scan/kd_tree.h"
@@ -22,6 +23,7 @@ struct PreparedScan {
   std::optional<KdTree> tree;                // over element positions; absent where empty or not asked for
   std::optional<DirectionIndex> directions;  // likewise
   std::optional<DirectionIndex> wide_directions;  // the same in larger buckets, for the first steps
+  std::optional<PatchRaster> raster;              // instead of both, for patches made of a matrix
   std::size_t raw_points = 0;                     // cells with a point before the filter
   std::size_t filter_changes = 0;                 // cells the filter changed
   double milliseconds = 0.0;

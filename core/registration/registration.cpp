@@ -14,12 +14,8 @@ namespace {
 
 // The data's own scale is taken this often after the annealing, then kept, so that the iteration can settle.
 constexpr int kOwnScaleSteps = 3;
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
+// Surfaces that fit worse than this are not the same surfaces.
+constexpr double kMostExcess_m = 0.05;
 
 double firstLossScale(const RegistrationSettings& settings) {
   switch (settings.loss) {
@@ -104,7 +100,7 @@ Registration::Registration(PreparedScanPtr fixed, PreparedScanPtr moving, const 
   moving_sample_ = sampledElements(moving_->elements, settings_);
   if (settings_.both_directions) fixed_sample_ = sampledElements(fixed_->elements, settings_);
   rejection_.distance_bound_m = settings_.max_distance_m;
-  loss_scale_m_ = firstLossScale(settings_);
+  loss_ = firstLossScale(settings_);
   own_scale_steps_left_ = settings_.loss == Loss::Annealed ? kOwnScaleSteps : 0;
 }
 
@@ -132,24 +128,24 @@ StepReport Registration::step(const std::stop_token& stop) {
 }
 
 void Registration::findPairsOfStep(StepReport& report) {
-  report.rejected = findPairs(*fixed_, *moving_, pose_, fixed_sample_, moving_sample_, loss_scale_m_,
+  report.rejected = findPairs(*fixed_, *moving_, pose_, fixed_sample_, moving_sample_, loss_.scale_m,
                               settings_, rejection_, pairs_);
   report.pairs = kept_ = report.rejected[static_cast<std::size_t>(RejectReason::None)];
-  report.loss_scale_m = loss_scale_m_;
+  report.loss = loss_;
 }
 
 std::optional<StopReason> Registration::advance(StepReport& report) {
   const Metric metric = metricOf(settings_.motion, settings_.reduction == Reduction::Patches);
   LinearSystem system;
-  linearise(metric, fixed_->elements, moving_->elements, Pose(), pose_, pairs_, settings_, loss_scale_m_,
-            system, &residuals_);
+  linearise(metric, fixed_->elements, moving_->elements, Pose(), pose_, pairs_, settings_, loss_, system,
+            &residuals_);
   measure(metric, system, report);
   if (kept_ < static_cast<std::size_t>(settings_.min_pairs)) return StopReason::TooFewPairs;
 
   const Pose before = pose_;
   if (metric == Metric::PointToPoint) {
     const Result<Pose> found =
-        closedFormStep(settings_.motion, fixed_->elements, moving_->elements, pose_, pairs_, loss_scale_m_);
+        closedFormStep(settings_.motion, fixed_->elements, moving_->elements, pose_, pairs_, loss_);
     if (!found) return StopReason::Degenerate;
     pose_ = *found;
   } else {
@@ -188,13 +184,21 @@ void Registration::measure(Metric metric, const LinearSystem& system, StepReport
 }
 
 void Registration::updateLossScale() {
-  if (settings_.loss != Loss::Annealed || own_scale_steps_left_ == 0) return;
-  if (loss_scale_m_ > settings_.loss_end_m) {
-    loss_scale_m_ = std::max(settings_.loss_end_m, loss_scale_m_ * settings_.loss_factor);
+  if (settings_.loss != Loss::Annealed || own_scale_steps_left_ == 0 || residuals_.size_m.empty()) return;
+  const double typical = medianOf(residuals_.size_m);
+  if (!loss_.isOwn() && loss_.scale_m > settings_.loss_end_m) {
+    // A start that is good already need not wait for the scale to come down.
+    const double next = std::min(loss_.scale_m * settings_.loss_factor, settings_.loss_follow * typical);
+    loss_ = std::max(settings_.loss_end_m, iteration_ > 1 ? next : loss_.scale_m * settings_.loss_factor);
     return;
   }
   --own_scale_steps_left_;
-  loss_scale_m_ = std::clamp(median(residuals_), settings_.loss_minimum_m, settings_.loss_end_m);
+  if (residuals_.variance_m2.empty()) {
+    loss_ = std::clamp(typical, settings_.loss_minimum_m, settings_.loss_end_m);
+    return;
+  }
+  const double excess = excessDeviation(residuals_.size_m, residuals_.variance_m2);
+  loss_ = LossScale::ofOwnDeviation(settings_.loss_deviations, std::min(excess, kMostExcess_m));
 }
 
 std::optional<StopReason> Registration::limitReached() const {

@@ -44,7 +44,7 @@ struct StepReport {
   double error_m2 = 0.0;
   double rms_m = 0.0;             // its root
   double change = 0.0;            // relative change of error_m2 against the step before; 1 for the first
-  double loss_scale_m = 0.0;      // 0: no loss
+  LossScale loss;                 // at which the step was taken
   double distance_bound_m = 0.0;  // on pairs, after the step; 0: none
   Conditioning condition;
   double overlap = 0.0;    // see Registration::overlap
@@ -108,9 +108,9 @@ class Registration {
   std::vector<std::uint32_t> moving_sample_, fixed_sample_;
   std::vector<Correspondence> pairs_;
   RejectionState rejection_;
-  std::vector<double> residuals_;
+  Residuals residuals_;
   int iteration_ = 0;
-  double loss_scale_m_ = 0.0;
+  LossScale loss_;
   int own_scale_steps_left_ = 0;
   double error_m2_ = 0.0;
   double overlap_ = 0.0, agreement_ = 0.0, rms_m_ = 0.0;

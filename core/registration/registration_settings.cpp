@@ -37,25 +37,34 @@ void addPreparation(Table& t) {
          "thesis 4.2.2.3");
   t.integer("normal-neighbours", &S::normal_neighbours, "", 3, 100,
             "Points that a normal is taken from where a scan is no matrix.", "ours");
-  t.choice("patch-grouping", &S::patch_grouping,
-           {{"cubes", PatchGrouping::Cubes}, {"blocks", PatchGrouping::Blocks}},
-           "What plane patches are split from: cubes of space, or blocks of the matrix's cells (faster; weak "
-           "where most "
-           "surfaces are near).",
-           "ours");
-  t.real("patch-size", &S::patch_size_m, "m", 0.1, 20.0, "Edge of the cubes.", "ours");
-  t.integer("patch-rows", &S::patch_rows, "cells", 3, 1000, "Height of the blocks.", "ours");
-  t.integer("patch-columns", &S::patch_columns, "cells", 3, 1000, "Width of the blocks.", "ours");
-  t.boolean("patch-drop-edges", &S::patch_drop_edges,
-            "Leave out cells where 1/range bends, as at edges and in leaves; thin objects go with them.",
-            "ours");
+  t.choice(
+      "patch-grouping", &S::patch_grouping,
+      {{"auto", PatchGrouping::Auto}, {"cubes", PatchGrouping::Cubes}, {"blocks", PatchGrouping::Blocks}},
+      "What plane patches are made of: cubes of space, or blocks of the matrix's cells (faster and finer, "
+      "but "
+      "weak where most surfaces are near); auto takes blocks where a matrix mostly looks further than "
+      "patch-near.",
+      "ours");
+  t.real(
+      "patch-near", &S::patch_near_m, "m", 0.0, 1000.0,
+      "Median range from which auto takes blocks: nearer, the many small patches of near surfaces outweigh "
+      "all others.",
+      "ours");
+  t.real("patch-size", &S::patch_size_m, "m", 0.1, 20.0, "Edge of the cubes, and longest side of a block.",
+         "ours");
+  t.integer("patch-rows", &S::patch_rows, "cells", 1, 1000, "Height of the smallest blocks.", "ours");
+  t.integer("patch-columns", &S::patch_columns, "cells", 1, 1000, "Width of the smallest blocks.", "ours");
+  t.boolean(
+      "patch-drop-edges", &S::patch_drop_edges,
+      "Blocks leave out cells where 1/range bends, as at edges and in leaves; thin objects go with them.",
+      "ours");
   t.integer("patch-splits", &S::patch_splits, "", 0, 10,
             "How often a group of points that is not planar is halved.", "ours");
   t.integer("patch-min-points", &S::patch_min_points, "", 4, 1000, "Smaller patches are dropped.", "ours");
-  t.real(
-      "patch-noise", &S::patch_noise_m, "mm", 0.0, 1000.0,
-      "Range noise: a group is split while its residual is above 2 sqrt((noise cos incidence)^2 + floor^2).",
-      "ours; 12 mm is the LMS-291", 0.001);
+  t.real("patch-noise", &S::patch_noise_m, "mm", 0.0, 1000.0,
+         "Range noise: a group is split while its residual is above sqrt(2) sqrt((noise cos incidence)^2 + "
+         "floor^2).",
+         "ours; 12 mm is the LMS-291", 0.001);
   t.real("patch-floor", &S::patch_floor_m, "mm", 0.0, 1000.0, "The floor in the same bound.", "ours", 0.001);
   t.real("patch-rough-noise", &S::patch_rough_noise_m, "mm", 0.0, 1000.0,
          "What cannot be split further is kept while its residual is below the same bound with this noise.",
@@ -122,10 +131,17 @@ void addEstimation(Table& t) {
          "First scale of the annealing; too small a value misses far starts.", "ours");
   t.real("loss-factor", &S::loss_factor, "", 0.05, 0.95,
          "The scale's factor each step; small values lose pairs.", "ours");
+  t.real("loss-follow", &S::loss_follow, "", 1.0, 1000.0,
+         "Nor is the scale ever above so many median residuals: a good start need not wait for it.", "ours");
   t.real("loss-end", &S::loss_end_m, "mm", 0.1, 10000.0,
-         "Where the annealing ends; the scale is then the median residual.", "ours", 0.001);
-  t.real("loss-minimum", &S::loss_minimum_m, "mm", 0.01, 10000.0, "The scale never falls below.", "ours",
-         0.001);
+         "Where the annealing ends; the scale is then taken from the data.", "ours", 0.001);
+  t.real("loss-deviations", &S::loss_deviations, "", 0.5, 100.0,
+         "Patches: the scale in the end, in deviations of each pair's residual (what its patches and all "
+         "residuals "
+         "together tell of it).",
+         "ours; Mandel and Paule 1970");
+  t.real("loss-minimum", &S::loss_minimum_m, "mm", 0.01, 10000.0,
+         "Points: the scale is the median residual in the end, but never below.", "ours", 0.001);
 }
 
 void addEnd(Table& t) {
@@ -145,7 +161,8 @@ void addEnd(Table& t) {
       "With a smaller share of the pairs within three deviations, the registration fails as without overlap.",
       "ours");
   t.real("retry-agreement", &S::retry_agreement, "", 0.0, 1.0,
-         "With a smaller share of the pairs within three deviations, the pair is registered again from other headings "
+         "With a smaller share of the pairs within three deviations, the pair is registered again from other "
+         "headings "
          "and the result that fits most is kept; 0 never does.",
          "ours: right results on simulated drives had 0.61 or more, a wrong one 0.47");
   t.angle("retry-heading", &S::retry_heading_rad, 0.1, 60.0,

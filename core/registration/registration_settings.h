@@ -18,8 +18,9 @@ enum class Reduction {
 };
 // What plane patches are split from.
 enum class PatchGrouping {
+  Auto,    // blocks of a matrix that mostly looks further than patch_near_m, else cubes
   Cubes,   // of space: the same for matrices and unordered clouds
-  Blocks,  // of cells, where the scan is a matrix; faster, but small where surfaces are near
+  Blocks,  // of cells, where the scan is a matrix; faster and finer, but near surfaces outnumber all others
 };
 enum class Sampling { All, Uniform, Random, NormalSpace };
 enum class PairChoice {
@@ -55,15 +56,16 @@ struct RegistrationSettings : RejectionSettings {
   Reduction reduction = Reduction::Patches;
   double reduction_distance_m = 0.5;  // line and voxel
   int normal_neighbours = 12;         // normals of an unordered cloud, for point methods
-  PatchGrouping patch_grouping = PatchGrouping::Cubes;
-  double patch_size_m = 2.0;  // edge of the cubes
-  int patch_rows = 12;        // size of the blocks, cells
-  int patch_columns = 12;
-  bool patch_drop_edges = false;  // leave out cells at depth edges (regular matrices)
-  int patch_splits = 5;           // at most so many halvings
+  PatchGrouping patch_grouping = PatchGrouping::Auto;
+  double patch_near_m = 4.0;  // median range from which a matrix is cut into blocks
+  double patch_size_m = 2.0;  // edge of the cubes, longest side of a block
+  int patch_rows = 3;         // size of the smallest blocks, cells
+  int patch_columns = 6;
+  bool patch_drop_edges = true;  // blocks: leave out cells at depth edges (regular matrices)
+  int patch_splits = 5;          // at most so many halvings
   int patch_min_points = 5;
-  // A group is planar, and not split, when its residual is below 2 sqrt((noise cos incidence)^2 + floor^2);
-  // one that cannot be split further is kept when it is below the same of the rough surfaces.
+  // A group is planar, and not split, when its residual is below sqrt(2) sqrt((noise cos incidence)^2 +
+  // floor^2); one that cannot be split further is kept when it is below the same of the rough surfaces.
   double patch_noise_m = 0.012;
   double patch_floor_m = 0.002;
   double patch_rough_noise_m = 0.03;
@@ -86,8 +88,10 @@ struct RegistrationSettings : RejectionSettings {
   double loss_scale_m = 0.1;      // Geman-McClure: the scale
   double loss_start_m = 2.0;      // annealed: first scale
   double loss_factor = 0.6;       // annealed: times this each step
-  double loss_end_m = 0.02;       // annealed: down to here, then to the median residual
-  double loss_minimum_m = 0.002;  // annealed: but never below
+  double loss_follow = 3.0;       // annealed: nor above so many median residuals
+  double loss_end_m = 0.02;       // annealed: down to here, then to the data's own
+  double loss_deviations = 1.5;   // annealed, patches: in the end so many deviations of each pair's residual
+  double loss_minimum_m = 0.002;  // annealed, points: in the end the median residual, but never below
 
   // End of the iteration.
   int max_iterations = 60;
@@ -102,7 +106,7 @@ struct RegistrationSettings : RejectionSettings {
   double max_correction_rad = 1.5707963267948966;
 
   // Trying again (registerPair): a result that agrees less is doubted, and other headings are started from.
-  double retry_agreement = 0.6;                   // 0: never
+  double retry_agreement = 0.5;                    // 0: never
   double retry_heading_rad = 0.17453292519943295;  // 10 deg; once and twice this to either side
 };
 

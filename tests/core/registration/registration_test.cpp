@@ -53,7 +53,7 @@ bool sameBits(const Pose& a, const Pose& b) {
 bool sameBits(const StepReport& a, const StepReport& b) {
   return a.iteration == b.iteration && sameBits(a.fixed_from_moving, b.fixed_from_moving) &&
          a.pairs == b.pairs && a.rejected == b.rejected && a.error_m2 == b.error_m2 &&
-         a.loss_scale_m == b.loss_scale_m && a.stop == b.stop;
+         a.loss.scale_m == b.loss.scale_m && a.loss.deviations == b.loss.deviations && a.stop == b.stop;
 }
 
 std::vector<StepReport> runToEnd(Registration registration) {

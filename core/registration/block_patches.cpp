@@ -1,0 +1,92 @@
+#include "core/registration/block_patches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+#include "core/registration/grid_moments.h"
+#include "core/registration/plane_patch.h"
+
+namespace tiltmap {
+
+namespace {
+
+constexpr int kLargestLevel = 5;  // 32 x 32 tiles
+
+class Pyramid {
+ public:
+  Pyramid(MomentGrid tiles, const RegistrationSettings& settings, BlockPatches& out)
+      : settings_(settings), out_(out) {
+    levels_.push_back(std::move(tiles));
+    while (static_cast<int>(levels_.size()) <= kLargestLevel &&
+           (levels_.back().rows > 1 || levels_.back().columns > 1))
+      levels_.push_back(halved(levels_.back()));
+  }
+
+  void descend() {
+    const int top = static_cast<int>(levels_.size()) - 1;
+    const MomentGrid& grid = levels_.back();
+    for (int row = 0; row < grid.rows; ++row)
+      for (int column = 0; column < grid.columns; ++column) look(top, row, column);
+  }
+
+ private:
+  void look(int level, int row, int column) {
+    const Moments& m = levels_[static_cast<std::size_t>(level)].at(row, column);
+    if (m.n < settings_.patch_min_points) return;
+    const Eigen::Matrix3d covariance = m.covariance();
+    // The variance of a uniform line of length L is L^2 / 12.
+    const double largest = settings_.patch_size_m * settings_.patch_size_m / 12.0;
+    if (level > 0 && covariance.trace() > 2.0 * largest) return split(level, row, column);
+    solver_.computeDirect(covariance);
+    const Eigen::Vector3d values = solver_.eigenvalues();
+    if (level > 0 && values[2] > largest) return split(level, row, column);
+    const Eigen::Matrix3d axes = solver_.eigenvectors();
+    const Eigen::Vector3d mean = m.mean();
+    const bool planar =
+        fitsPlane(mean, values, axes.col(0), settings_.patch_noise_m, settings_.patch_floor_m);
+    if (!planar && level > 0) return split(level, row, column);
+    if (!planar &&
+        !fitsPlane(mean, values, axes.col(0), settings_.patch_rough_noise_m, settings_.patch_rough_floor_m))
+      return;
+    const auto patch = static_cast<std::uint32_t>(out_.elements.size());
+    if (!appendPatch(mean, values, axes, m.n, out_.elements)) return;
+    const int first_row = row << level, first_column = column << level;
+    const MomentGrid& tiles = levels_.front();
+    const int last_row = std::min(tiles.rows, (row + 1) << level);
+    const int last_column = std::min(tiles.columns, (column + 1) << level);
+    for (int r = first_row; r < last_row; ++r)
+      for (int c = first_column; c < last_column; ++c)
+        if (const Moments& tile = tiles.at(r, c); tile.n > 0.0)
+          out_.raster.paint({tile.x, tile.y, tile.z}, patch);
+  }
+
+  void split(int level, int row, int column) {
+    const MomentGrid& grid = levels_[static_cast<std::size_t>(level) - 1];
+    for (const int r : {2 * row, 2 * row + 1})
+      for (const int c : {2 * column, 2 * column + 1})
+        if (r < grid.rows && c < grid.columns) look(level - 1, r, c);
+  }
+
+  const RegistrationSettings& settings_;
+  BlockPatches& out_;
+  std::vector<MomentGrid> levels_;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver_;
+};
+
+}  // namespace
+
+BlockPatches blockPatches(const RangeImage& image, const ScannerGeometry& geometry,
+                          const RegistrationSettings& settings) {
+  BlockPatches out;
+  Pyramid pyramid(
+      tileMoments(image, geometry, settings.patch_rows, settings.patch_columns, settings.patch_drop_edges),
+      settings, out);
+  pyramid.descend();
+  out.raster.closeGaps();
+  return out;
+}
+
+}  // namespace tiltmap

@@ -1,0 +1,222 @@
+#include "core/registration/grid_moments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace tiltmap {
+
+namespace {
+
+constexpr float kBend_m = 0.2F;
+
+// Sums over some beams of one line, in the plane of the mirror: the tilt is the same for all, so the three
+// dimensions come in once a tile instead of once a beam.
+struct LineSums {
+  double n = 0.0, c = 0.0, s = 0.0, cc = 0.0, cs = 0.0, ss = 0.0;
+};
+
+// What the beams of one line have in common: p = arm + c * across + s * ahead, where (c, s) is the range
+// times the cosine and sine of the azimuth.
+struct LinePlane {
+  Eigen::Vector3d arm, across, ahead;
+
+  LinePlane(const ScannerGeometry& geometry, double tilt_rad) {
+    const double e = tilt_rad + geometry.tilt_zero_rad;
+    const double c = std::cos(e), s = std::sin(e);
+    const auto tilted = [&](const Eigen::Vector3d& v) {
+      return Eigen::Vector3d(v.x(), c * v.y() - s * v.z(), s * v.y() + c * v.z());
+    };
+    arm = tilted(geometry.lever_arm_m);
+    across = tilted(geometry.mounting * Eigen::Vector3d::UnitX());
+    ahead = tilted(geometry.mounting * Eigen::Vector3d::UnitY());
+  }
+
+  void addTo(Moments& m, const LineSums& k) const {
+    const Eigen::Vector3d first = k.c * across + k.s * ahead;
+    const Eigen::Vector3d a = k.cc * across + k.cs * ahead;
+    const Eigen::Vector3d b = k.cs * across + k.ss * ahead;
+    // sum of (arm + v) (arm + v)^T, v = c across + s ahead
+    const auto second = [&](int i, int j) {
+      return a[i] * across[j] + b[i] * ahead[j] + arm[i] * first[j] + first[i] * arm[j] +
+             k.n * arm[i] * arm[j];
+    };
+    m.n += k.n;
+    m.x += first.x() + k.n * arm.x();
+    m.y += first.y() + k.n * arm.y();
+    m.z += first.z() + k.n * arm.z();
+    m.xx += second(0, 0), m.xy += second(0, 1), m.xz += second(0, 2);
+    m.yy += second(1, 1), m.yz += second(1, 2), m.zz += second(2, 2);
+  }
+};
+
+// Rows of 1 / range with a border of zeros, so that neighbours need no special case: a missing neighbour
+// bends 1/range by much more than the bound.
+class InverseRanges {
+ public:
+  InverseRanges(const RangeImage& image, const ScannerGeometry& geometry)
+      : stride_(static_cast<std::size_t>(image.columns()) + 2),
+        inverse_(stride_ * (static_cast<std::size_t>(image.rows()) + 2), 0.0F) {
+    const auto columns = static_cast<std::size_t>(image.columns());
+    const auto offset = static_cast<float>(geometry.range_offset_m);
+    const float* range = image.data().range_m.data();
+    const CellCode* code = image.data().code.data();
+    for (int row = 0; row < image.rows(); ++row) {
+      float* out = inverse_.data() + (static_cast<std::size_t>(row) + 1) * stride_ + 1;
+      for (std::size_t k = 0; k < columns; ++k)
+        out[k] = cell_code::hasPoint(code[k]) ? 1.0F / (range[k] + offset) : 0.0F;
+      range += columns, code += columns;
+    }
+  }
+  // Of the cells of one row; [-1] and [columns] are 0.
+  const float* row(int row) const {
+    return inverse_.data() + (static_cast<std::size_t>(row + 1)) * stride_ + 1;
+  }
+
+ private:
+  std::size_t stride_;
+  std::vector<float> inverse_;
+};
+
+MomentGrid emptyGrid(const RangeImage& image, int tile_rows, int tile_columns) {
+  MomentGrid grid;
+  grid.rows = (image.rows() + tile_rows - 1) / tile_rows;
+  grid.columns = (image.columns() + tile_columns - 1) / tile_columns;
+  grid.tile.resize(static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.columns));
+  return grid;
+}
+
+// A scanner's regular matrix: a line at a time, without making points.
+class RegularTiles {
+ public:
+  RegularTiles(const RangeImage& image, const ScannerGeometry& geometry, bool drop_edges)
+      : image_(image),
+        geometry_(geometry),
+        drop_edges_(drop_edges),
+        inverse_(image, geometry),
+        columns_(static_cast<std::size_t>(image.columns())),
+        cosine_(columns_),
+        sine_(columns_),
+        across_(columns_),
+        ahead_(columns_),
+        used_(columns_),
+        two_cos_azimuth_(static_cast<float>(2.0 * std::cos(geometry.azimuth_step_rad))) {
+    for (std::size_t k = 0; k < columns_; ++k) {
+      const double a = geometry.azimuthOfColumn(static_cast<int>(k));
+      cosine_[k] = std::cos(a), sine_[k] = std::sin(a);
+    }
+    const int rows = image.rows();
+    const double step = rows > 1 ? (image.lineTilt(rows - 1) - image.lineTilt(0)) / (rows - 1) : 0.0;
+    two_cos_tilt_ = static_cast<float>(2.0 * std::cos(step));
+  }
+
+  void addLine(int row, int tile_columns, Moments* tiles) {
+    chooseCells(row);
+    for (std::size_t k = 0; k < columns_; ++k) {
+      const double range =
+          static_cast<double>(used_[k]) *
+          (static_cast<double>(image_.data().range_m[image_.index(row, 0) + k]) + geometry_.range_offset_m);
+      across_[k] = range * cosine_[k];
+      ahead_[k] = range * sine_[k];
+    }
+    const LinePlane plane(geometry_, image_.lineTilt(row));
+    const auto width = static_cast<std::size_t>(tile_columns);
+    for (std::size_t first = 0; first < columns_; first += width, ++tiles) {
+      const std::size_t last = std::min(columns_, first + width);
+      LineSums sums;
+      for (std::size_t k = first; k < last; ++k) {
+        const double c = across_[k], s = ahead_[k];
+        sums.n += static_cast<double>(used_[k]);
+        sums.c += c, sums.s += s;
+        sums.cc += c * c, sums.cs += c * s, sums.ss += s * s;
+      }
+      if (sums.n > 0.0) plane.addTo(*tiles, sums);
+    }
+  }
+
+ private:
+  // 1 where a cell takes part, 0 where not.
+  void chooseCells(int row) {
+    const float* here = inverse_.row(row);
+    const float* before = inverse_.row(row - 1);
+    const float* after = inverse_.row(row + 1);
+    for (std::size_t k = 0; k < columns_; ++k) {
+      const float q = here[k];
+      if (!drop_edges_) {
+        used_[k] = q > 0.0F ? 1.0F : 0.0F;
+        continue;
+      }
+      const float* at = here + k;
+      const float bend_along = std::abs(at[-1] + at[1] - two_cos_azimuth_ * q);
+      const float bend_across = std::abs(before[k] + after[k] - two_cos_tilt_ * q);
+      // |bend| r^2 below the bound; a cell without a point fails on 0 < 0.
+      used_[k] = std::max(bend_along, bend_across) < kBend_m * q * q ? 1.0F : 0.0F;
+    }
+  }
+
+  const RangeImage& image_;
+  const ScannerGeometry& geometry_;
+  bool drop_edges_;
+  InverseRanges inverse_;
+  std::size_t columns_;
+  std::vector<double> cosine_, sine_, across_, ahead_;
+  std::vector<float> used_;
+  float two_cos_azimuth_, two_cos_tilt_ = 2.0F;
+};
+
+}  // namespace
+
+Moments& Moments::operator+=(const Moments& other) {
+  n += other.n;
+  x += other.x, y += other.y, z += other.z;
+  xx += other.xx, xy += other.xy, xz += other.xz;
+  yy += other.yy, yz += other.yz, zz += other.zz;
+  return *this;
+}
+
+Eigen::Matrix3d Moments::covariance() const {
+  const Eigen::Vector3d m = mean();
+  Eigen::Matrix3d c;
+  c(0, 0) = xx / n - m.x() * m.x();
+  c(1, 0) = c(0, 1) = xy / n - m.x() * m.y();
+  c(2, 0) = c(0, 2) = xz / n - m.x() * m.z();
+  c(1, 1) = yy / n - m.y() * m.y();
+  c(2, 1) = c(1, 2) = yz / n - m.y() * m.z();
+  c(2, 2) = zz / n - m.z() * m.z();
+  return c;
+}
+
+MomentGrid tileMoments(const RangeImage& image, const ScannerGeometry& geometry, int tile_rows,
+                       int tile_columns, bool drop_edges) {
+  if (tile_rows < 1 || tile_columns < 1) throw std::invalid_argument("tileMoments: a tile has no cells");
+  MomentGrid grid = emptyGrid(image, tile_rows, tile_columns);
+  if (image.isRegular()) {
+    RegularTiles lines(image, geometry, drop_edges);
+    for (int row = 0; row < image.rows(); ++row)
+      lines.addLine(row, tile_columns,
+                    grid.tile.data() + static_cast<std::ptrdiff_t>(row / tile_rows) * grid.columns);
+    return grid;
+  }
+  for (int row = 0; row < image.rows(); ++row)
+    for (int column = 0; column < image.columns(); ++column) {
+      if (!image.hasPoint(row, column)) continue;
+      const Eigen::Vector3d p = cellPoint(image, geometry, row, column);
+      grid.tile[static_cast<std::size_t>(row / tile_rows * grid.columns + column / tile_columns)] +=
+          {1.0,           p.x(),         p.y(),         p.z(),         p.x() * p.x(),
+           p.x() * p.y(), p.x() * p.z(), p.y() * p.y(), p.y() * p.z(), p.z() * p.z()};
+    }
+  return grid;
+}
+
+MomentGrid halved(const MomentGrid& fine) {
+  MomentGrid coarse;
+  coarse.rows = (fine.rows + 1) / 2;
+  coarse.columns = (fine.columns + 1) / 2;
+  coarse.tile.resize(static_cast<std::size_t>(coarse.rows) * static_cast<std::size_t>(coarse.columns));
+  for (int row = 0; row < fine.rows; ++row)
+    for (int column = 0; column < fine.columns; ++column)
+      coarse.tile[static_cast<std::size_t>(row / 2 * coarse.columns + column / 2)] += fine.at(row, column);
+  return coarse;
+}
+
+}  // namespace tiltmap

@@ -1,0 +1,61 @@
+#include "core/registration/loss_scale.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace tiltmap {
+
+namespace {
+
+constexpr double kQuarterSquare = 0.1015310;  // a normal variate's square is below this for one in four
+constexpr double kMedianSquare = 0.4549364;   // the same for one in two
+constexpr double kFittingSquare = 9.0;        // three deviations
+constexpr int kRounds = 5;                    // the ratio is within a percent of 1 after three
+constexpr int kTrimmedRounds = 3;
+
+// The value that one in `share` lies below; reorders.
+double quantileOf(std::vector<double>& values, std::size_t share) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(values.size() / share);
+  std::ranges::nth_element(values, place);
+  return *place;
+}
+
+}  // namespace
+
+double medianOf(std::vector<double> values) {
+  if (values.empty()) throw std::invalid_argument("medianOf: no values");
+  return quantileOf(values, 2);
+}
+
+double excessDeviation(const std::vector<double>& residuals_m, const std::vector<double>& variances_m2) {
+  if (residuals_m.size() != variances_m2.size())
+    throw std::invalid_argument("excessDeviation: residuals and variances differ in number");
+  if (residuals_m.empty()) return 0.0;
+  const auto square = [&](std::size_t i, double excess) {
+    return residuals_m[i] * residuals_m[i] / (variances_m2[i] + excess);
+  };
+  double excess = 0.0;  // m^2
+  double typical = medianOf(variances_m2);
+  std::vector<double> squares, variances;
+  const auto take = [&](double ratio) { excess = std::max(0.0, (typical + excess) * ratio - typical); };
+  for (int round = 0; round < kRounds; ++round) {
+    squares.clear();
+    for (std::size_t i = 0; i < residuals_m.size(); ++i) squares.push_back(square(i, excess));
+    take(quantileOf(squares, 4) / kQuarterSquare);
+    if (excess == 0.0) break;
+  }
+  for (int round = 0; round < kTrimmedRounds; ++round) {
+    squares.clear(), variances.clear();
+    for (std::size_t i = 0; i < residuals_m.size(); ++i) {
+      const double s = square(i, excess);
+      if (s < kFittingSquare) squares.push_back(s), variances.push_back(variances_m2[i]);
+    }
+    if (squares.empty()) break;
+    typical = quantileOf(variances, 2);
+    take(quantileOf(squares, 2) / kMedianSquare);
+  }
+  return std::sqrt(excess);
+}
+
+}  // namespace tiltmap

@@ -1,0 +1,46 @@
+#include "core/registration/plane_patch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tiltmap {
+
+namespace {
+
+constexpr double kResidualFloor_m = 0.002;  // no surface measured by us is known better, ours
+constexpr double kOffsetFloor_m = 0.001;
+
+}  // namespace
+
+bool fitsPlane(const Eigen::Vector3d& mean, const Eigen::Vector3d& values, const Eigen::Vector3d& normal,
+               double noise_m, double floor_m) {
+  const double range = mean.norm();
+  const double cos_incidence = range > 0.0 ? std::abs(normal.dot(mean)) / range : 1.0;
+  const double noise = noise_m * cos_incidence;
+  return values[0] < 2.0 * (noise * noise + floor_m * floor_m);
+}
+
+bool appendPatch(const Eigen::Vector3d& mean, const Eigen::Vector3d& values, const Eigen::Matrix3d& axes,
+                 double count, SurfaceElements& out) {
+  // The second extent must stand out of the residual.
+  if (values[1] < 9.0 * values[0] || !(values[1] > 0.0)) return false;
+  Eigen::Vector3d normal = axes.col(0);
+  if (normal.dot(mean) > 0.0) normal = -normal;
+  const double residual = std::max(values[0], 0.0) + kResidualFloor_m * kResidualFloor_m;
+  PatchShape shape;
+  shape.u = axes.col(2);
+  shape.v = axes.col(1);
+  shape.offset_variance_m2 = residual / count + kOffsetFloor_m * kOffsetFloor_m;
+  shape.tilt_variance_u = residual / (count * values[2]);
+  shape.tilt_variance_v = residual / (count * values[1]);
+  shape.extent_u_m = std::sqrt(values[2]);
+  shape.extent_v_m = std::sqrt(values[1]);
+  shape.residual_m = std::sqrt(std::max(values[0], 0.0));
+  shape.count = static_cast<std::uint32_t>(count);
+  out.position.push_back(mean);
+  out.normal.push_back(normal);
+  out.shape.push_back(shape);
+  return true;
+}
+
+}  // namespace tiltmap
