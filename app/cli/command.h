@@ -59,5 +59,9 @@ void addExport(CLI::App& app, Chosen& chosen);
 void addParameters(CLI::App& app, Chosen& chosen);
 void addDemo(CLI::App& app, Chosen& chosen);
 void addHistory(CLI::App& app, Chosen& chosen);  // undo, redo, history
+void addEdits(CLI::App& app, Chosen& chosen);    // rename, note, survey, delete, rebase
+void addPhoto(CLI::App& app, Chosen& chosen);
+void addLink(CLI::App& app, Chosen& chosen);
+void addFiles(CLI::App& app, Chosen& chosen);  // copy, merge, compact, verify
 
 }  // namespace tiltmap::cli

@@ -19,7 +19,7 @@ void addOutputFlags(CLI::App& app, OutputFlags& flags) {
 
 const CLI::App& namedCommand(const CLI::App& app) {
   const CLI::App* command = &app;
-  for (const CLI::App* sub : app.get_subcommands()) command = sub;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().back();
   return *command;
 }
 
@@ -29,10 +29,18 @@ std::vector<std::string> knownWords(const CLI::App& app, const CLI::App& command
   for (const CLI::App* place : {&app, &command})
     for (const CLI::Option* option : place->get_options())
       for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
-  if (&command == &app)
-    for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
-      known.push_back(sub->get_name());
+  for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; }))
+    known.push_back(sub->get_name());
   return known;
+}
+
+bool takesCommand(const CLI::App& command) {
+  return !command.get_subcommands([](const CLI::App*) { return true; }).empty();
+}
+
+// "tiltmap photo add": the words that lead to a command.
+std::string wordsOf(const CLI::App& command) {
+  return command.get_parent() ? wordsOf(*command.get_parent()) + " " + command.get_name() : "tiltmap";
 }
 
 // What the parser says, and for a word that nobody knows the one that was probably meant.
@@ -44,13 +52,15 @@ Error unexpectedWords(const CLI::App& app, const CLI::ParseError& error,
   for (const std::string& word : words) {
     const std::string name = word.substr(0, word.find('='));
     const bool flag = name.starts_with("--");
-    if ((!flag && &command != &app) || std::ranges::find(known, name) != known.end()) continue;
+    if ((!flag && !takesCommand(command)) || word == command.get_name() ||
+        std::ranges::find(known, name) != known.end())
+      continue;
     if (const auto nearest = nearestName(name, known)) remedy = "did you mean " + *nearest + "? ";
     break;
   }
   const bool top = &command == &app;
-  return {error.what(), top ? "the command line" : "tiltmap " + command.get_name(),
-          remedy + "`tiltmap " + (top ? "" : command.get_name() + " ") + "--help` lists what there is"};
+  return {error.what(), top ? "the command line" : wordsOf(command),
+          remedy + "`" + wordsOf(command) + " --help` lists what there is"};
 }
 
 int parseError(const CLI::App& app, const CLI::ParseError& error, Console& console,
@@ -76,8 +86,9 @@ int run(int argc, char** argv) {
   app.footer("`tiltmap COMMAND --help` tells the rest.");
 
   Chosen chosen;
-  for (const auto add : {addNew, addSimulate, addImport, addInfo, addRegister, addRelax, addPoses, addEvaluate,
-                         addExport, addParameters, addHistory, addDemo})
+  for (const auto add :
+       {addNew, addSimulate, addImport, addInfo, addRegister, addRelax, addPoses, addEvaluate, addExport,
+        addParameters, addHistory, addEdits, addPhoto, addLink, addFiles, addDemo})
     add(app, chosen);
 
   try {

@@ -1,4 +1,5 @@
-// tiltmap export P.tiltmap OUT.ply|pcd|xyz [--stage S] [--raw|--reduced] [--scans 0-5]
+// tiltmap export P.tiltmap OUT.ply|pcd|ptx|3d|vtk|xyz|csv [--stage S] [--raw|--reduced] [--scans 0-5]
+// [--per-scan]
 #include "app/cli/operation_runner.h"
 
 namespace tiltmap::cli {
@@ -10,8 +11,9 @@ void addExport(CLI::App& app, Chosen& chosen) {
   auto file = std::make_shared<std::string>();
   command->add_option("project", *path, "The project")->required();
   command
-      ->add_option("file", *file,
-                   "Where to write; the extension says the format: ply, pcd, xyz, csv, ptx, vtk")
+      ->add_option(
+          "file", *file,
+          "Where to write; the extension says the format: ply, pcd, ptx, 3d, vtk, xyz, txt, asc or csv")
       ->required();
   std::vector<ParameterInfo> infos = operations().find("export")->parameters();
   std::erase_if(infos, [](const ParameterInfo& info) { return info.name == "file"; });
@@ -26,7 +28,9 @@ void addExport(CLI::App& app, Chosen& chosen) {
       return operationCommand(
           context, *path, "export", "default", *values,
           [](const nlohmann::json& report) {
-            return "wrote " + report["file"].get<std::string>() + " (" +
+            const std::size_t files = report["files"].size();
+            return "wrote " + report["file"].get<std::string>() +
+                   (files > 1 ? " and " + std::to_string(files - 1) + " more" : "") + " (" +
                    std::to_string(report["scans"].get<int>()) +
                    " scans, poses: " + report["stage"].get<std::string>() + ")";
           },

@@ -1,5 +1,7 @@
 #include "app/cli/operation_runner.h"
 
+#include <filesystem>
+
 #include "core/project/job.h"
 
 namespace tiltmap::cli {
@@ -44,6 +46,31 @@ int operationCommand(Context& context, const std::string& project_path, const st
   context.console.printJson(as_json ? as_json(report) : report);
   context.console.print(text(report));
   return kDone;
+}
+
+int editCommand(Context& context, const std::string& project_path,
+                const std::function<Result<ProjectEdit>(const SnapshotPtr&)>& make,
+                const std::vector<std::string>* warnings) {
+  auto project = Project::open(project_path, Access::ReadWrite);
+  if (!project) return context.console.failed(project.error());
+  const auto edit = make((*project)->snapshot());
+  if (!edit) return context.console.failed(edit.error());
+  const auto change = (*project)->apply(*edit);
+  if (!change) return context.console.failed(change.error());
+  const std::vector<std::string> remarks = warnings ? *warnings : std::vector<std::string>();
+  for (const std::string& warning : remarks) context.console.warn(warning);
+  context.console.printJson(
+      {{"done", edit->title}, {"revision", change->revision}, {"warnings", warningsJson(remarks)}});
+  context.console.print("done: " + edit->title);
+  return kDone;
+}
+
+Status checkOutput(const std::string& file, const std::string& project_path) {
+  std::error_code ignored;
+  const std::string extension = std::filesystem::path(file).extension().string();
+  if (extension.starts_with(".tiltmap") || std::filesystem::equivalent(file, project_path, ignored))
+    return fail("this is the name of a project, which is never replaced", file, "choose another name");
+  return {};
 }
 
 Result<SnapshotPtr> readProject(const std::string& path) {

@@ -21,6 +21,15 @@ int operationCommand(Context& context, const std::string& project_path, const st
                      Access access = Access::ReadWrite,
                      const std::function<nlohmann::json(const nlohmann::json&)>& as_json = {});
 
+// A command that makes one edit: opens the project, applies what `make` says, prints what was done.
+// `warnings` may be filled by `make`. JSON: {"done": title, "revision": n, "warnings": [..]}.
+int editCommand(Context& context, const std::string& project_path,
+                const std::function<Result<ProjectEdit>(const SnapshotPtr&)>& make,
+                const std::vector<std::string>* warnings = nullptr);
+
+// Refuses a file name that a project has or may have: results of another kind never replace one.
+Status checkOutput(const std::string& file, const std::string& project_path);
+
 // A reading command's snapshot.
 Result<SnapshotPtr> readProject(const std::string& path);
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 static_assert(std::endian::native == std::endian::little,
@@ -13,14 +14,12 @@ namespace tiltmap {
 
 namespace {
 
-using Colour = std::array<std::uint8_t, 3>;
-
 std::uint8_t channel(double value) {
   return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(value, 0.0, 1.0)));
 }
 
 // Hue in turns, full saturation and the given brightness.
-Colour hue(double turns, double brightness) {
+Rgb hue(double turns, double brightness) {
   const double h = 6.0 * (turns - std::floor(turns));
   const auto part = [&](double centre) {
     const double away = std::abs(std::remainder(h - centre, 6.0));
@@ -39,63 +38,77 @@ PointCloud exportedCloud(const ExportScan& scan) {
   return cloudOf(*scan.image, scan.geometry);
 }
 
+Result<ColourScale> colourScale(const CloudForExport& cloud, CloudColour colour, const JobControl& control) {
+  std::vector<double> samples;
+  if (colour != CloudColour::Height && colour != CloudColour::Intensity) return ColourScale();
+  for (std::size_t i = 0; i < cloud.scans; ++i) {
+    if (control.stopRequested()) return fail(kCancelled, "export", "start again when you like");
+    const auto scan = cloud.scan(i);
+    if (!scan) return fail(scan.error());
+    const PointCloud points = exportedCloud(*scan);
+    const std::size_t stride = std::max<std::size_t>(1, points.size() / kSamplesPerScan);
+    for (std::size_t k = 0; k < points.size(); k += stride) {
+      if (colour == CloudColour::Height)
+        samples.push_back((scan->world_from_scan * points.points[k]).z());
+      else if (!points.intensity.empty())
+        samples.push_back(static_cast<double>(points.intensity[k]));
+    }
+  }
+  std::erase_if(samples, [](double v) { return !std::isfinite(v); });
+  if (samples.empty()) return ColourScale();
+  std::ranges::sort(samples);
+  return ColourScale{samples[samples.size() / 100], samples[samples.size() - 1 - samples.size() / 100]};
+}
+
+Rgb PointColours::of(const Eigen::Vector3d& in_world, float intensity, int scan) const {
+  const auto along = [this](double value) {
+    const double span = scale_.high - scale_.low;
+    return span > 0.0 ? std::clamp((value - scale_.low) / span, 0.0, 1.0) : 0.5;
+  };
+  switch (colour_) {
+    case CloudColour::None:
+      break;
+    // Steps of the golden ratio keep the hues of neighbouring scans apart.
+    case CloudColour::Scan:
+      return hue(0.61803398874989485 * scan, 0.9);
+    case CloudColour::Height:
+      return hue((1.0 - along(in_world.z())) * 2.0 / 3.0, 1.0);
+    case CloudColour::Intensity: {
+      const std::uint8_t grey = channel(along(static_cast<double>(intensity)));
+      return {grey, grey, grey};
+    }
+  }
+  return {};
+}
+
+float packedColour(const Rgb& colour) {
+  const std::uint32_t word = (std::uint32_t{colour[0]} << 16) | (std::uint32_t{colour[1]} << 8) | colour[2];
+  float value = 0.0F;
+  std::memcpy(&value, &word, sizeof(value));
+  return value;
+}
+
 Result<CloudStream> CloudStream::prepare(const CloudForExport& source, const WriteOptions& options,
-                                         const std::string& file, const JobControl& control) {
-  CloudStream stream(source, options, file, control);
+                                         const PointColours& colours, const std::string& file,
+                                         const JobControl& control) {
+  CloudStream stream(source, colours, file, control);
   stream.layout_.normals = source.normals;
   stream.layout_.intensity = source.intensity;
-  stream.layout_.colour = options.colour != CloudColour::None;
+  stream.layout_.colour = colours.any();
   stream.layout_.doubles = options.double_precision;
   if (auto counted = stream.count(); !counted) return fail(counted.error());
   return stream;
 }
 
 Status CloudStream::count() {
-  std::vector<double> samples;
-  const bool scale = options_.colour == CloudColour::Height || options_.colour == CloudColour::Intensity;
   for (std::size_t i = 0; i < source_.scans; ++i) {
     if (control_.stopRequested()) return fail(cancelled());
     auto scan = source_.scan(i);
     if (!scan) return fail(scan.error());
-    const PointCloud cloud = exportedCloud(*scan);
-    layout_.points += cloud.size();
-    const std::size_t stride = std::max<std::size_t>(1, cloud.size() / kSamplesPerScan);
-    for (std::size_t k = 0; scale && k < cloud.size(); k += stride) {
-      if (options_.colour == CloudColour::Height)
-        samples.push_back((scan->world_from_scan * cloud.points[k]).z());
-      else if (!cloud.intensity.empty())
-        samples.push_back(static_cast<double>(cloud.intensity[k]));
-    }
+    layout_.points += scan->cloud.empty() && scan->image ? scan->image->validCells() : scan->cloud.size();
   }
   if (layout_.points == 0)
     return fail("there are no points to write", file_, "choose scans that hold points");
-  std::erase_if(samples, [](double v) { return !std::isfinite(v); });
-  if (!samples.empty()) {
-    std::ranges::sort(samples);
-    colour_low_ = samples[samples.size() / 100];
-    colour_high_ = samples[samples.size() - 1 - samples.size() / 100];
-  }
-  return {};
-}
-
-Colour CloudStream::colourOf(const ExportPoint& point) const {
-  const auto along = [this](double value) {
-    const double span = colour_high_ - colour_low_;
-    return span > 0.0 ? std::clamp((value - colour_low_) / span, 0.0, 1.0) : 0.5;
-  };
-  switch (options_.colour) {
-    case CloudColour::None:
-      break;
-    // Steps of the golden ratio keep the hues of neighbouring scans apart.
-    case CloudColour::Scan:
-      return hue(0.61803398874989485 * point.scan, 0.9);
-    case CloudColour::Height:
-      return hue((1.0 - along(point.position.z())) * 2.0 / 3.0, 1.0);
-    case CloudColour::Intensity: {
-      const std::uint8_t grey = channel(along(static_cast<double>(point.intensity)));
-      return {grey, grey, grey};
-    }
-  }
   return {};
 }
 
@@ -122,7 +135,7 @@ Status CloudStream::forEach(const std::ostream& out,
       point.normal =
           cloud.hasNormal(k) ? Eigen::Vector3d(rotation * cloud.normals[k]) : Eigen::Vector3d::Zero();
       point.intensity = cloud.intensity.empty() ? 0.0F : cloud.intensity[k];
-      point.colour = colourOf(point);
+      if (colours_.any()) point.colour = colours_.of(point.position, point.intensity, point.scan);
       use(point);
     }
   }

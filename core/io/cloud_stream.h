@@ -22,6 +22,21 @@ struct ExportPoint {
   std::array<std::uint8_t, 3> colour{};
 };
 
+using Rgb = std::array<std::uint8_t, 3>;
+
+// The colour of a point, as CloudColour has it.
+class PointColours {
+ public:
+  PointColours(CloudColour colour, ColourScale scale) : colour_(colour), scale_(scale) {}
+
+  bool any() const { return colour_ != CloudColour::None; }
+  Rgb of(const Eigen::Vector3d& in_world, float intensity, int scan) const;
+
+ private:
+  CloudColour colour_;
+  ColourScale scale_;
+};
+
 // What the records of a file hold beside x y z and the scan's index.
 struct ExportLayout {
   std::size_t points = 0;
@@ -36,7 +51,8 @@ class CloudStream {
  public:
   // `source` and `control` must outlive this. Error: no points, a scan that cannot be had, cancelled.
   static Result<CloudStream> prepare(const CloudForExport& source, const WriteOptions& options,
-                                     const std::string& file, const JobControl& control);
+                                     const PointColours& colours, const std::string& file,
+                                     const JobControl& control);
 
   const ExportLayout& layout() const { return layout_; }
   // Calls `use` for every point. Error: as above, the stream gone bad (what says why comes from the file's
@@ -47,18 +63,16 @@ class CloudStream {
   Error cancelled() const;
 
  private:
-  CloudStream(const CloudForExport& source, const WriteOptions& options, std::string file,
+  CloudStream(const CloudForExport& source, const PointColours& colours, std::string file,
               const JobControl& control)
-      : source_(source), options_(options), file_(std::move(file)), control_(control) {}
+      : source_(source), colours_(colours), file_(std::move(file)), control_(control) {}
   Status count();
-  std::array<std::uint8_t, 3> colourOf(const ExportPoint& point) const;
 
   const CloudForExport& source_;
-  WriteOptions options_;
+  PointColours colours_;
   std::string file_;
   const JobControl& control_;
   ExportLayout layout_;
-  double colour_low_ = 0.0, colour_high_ = 1.0;
 };
 
 // The cloud of a scan to be exported: the one given, else the cells of its matrix.
@@ -86,11 +100,21 @@ Status writePcd(std::ostream& out, const CloudStream& stream);
 Status writeXyz(std::ostream& out, const CloudStream& stream);
 Status writeCsv(std::ostream& out, const CloudStream& stream);
 Status writeVtk(std::ostream& out, const CloudStream& stream);
-// Of scans that keep their matrix, in the scan's frame; `doubles` as in WriteOptions.
-Status writePtx(std::ostream& out, const CloudForExport& source, const std::string& file,
+// Of scans that keep their matrix, in the scan's frame.
+struct MatrixOptions {
+  bool doubles = false;  // as in WriteOptions
+  PointColours colours{CloudColour::None, {}};
+  std::string file;
+};
+Status writePtx(std::ostream& out, const CloudForExport& source, const MatrixOptions& options,
                 const JobControl& control);
-Status writeOrganisedPcd(std::ostream& out, const ExportScan& scan, bool doubles);
-Status writeOrganisedPly(std::ostream& out, const ExportScan& scan, bool doubles);
-Status writeUos(std::ostream& out, const ExportScan& scan);
+Status writeOrganisedPcd(std::ostream& out, const ExportScan& scan, const MatrixOptions& options,
+                         const JobControl& control);
+Status writeOrganisedPly(std::ostream& out, const ExportScan& scan, const MatrixOptions& options,
+                         const JobControl& control);
+Status writeUos(std::ostream& out, const ExportScan& scan, const MatrixOptions& options,
+                const JobControl& control);
+// PCL's way to put a colour into a float: the bytes 0 r g b of a 32-bit word.
+float packedColour(const Rgb& colour);
 
 }  // namespace tiltmap

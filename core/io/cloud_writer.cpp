@@ -17,7 +17,7 @@ namespace {
 Result<ExportScan> onlyScan(const CloudForExport& cloud, const std::string& file) {
   if (cloud.scans != 1)
     return fail("a .3d file holds one scan, not " + std::to_string(cloud.scans), file,
-                "write one file a scan, or choose ply, pcd, ptx, vtk, xyz or csv");
+                "write one file a scan (--per-scan), or choose ply, pcd, ptx, vtk, xyz or csv");
   auto scan = cloud.scan(0);
   if (scan && !scan->image && scan->cloud.empty())
     return fail("there are no points to write", file, "choose scans that hold points");
@@ -86,31 +86,38 @@ Status writeCloud(const std::filesystem::path& path, const CloudForExport& cloud
   const std::string file = path.string();
   if (cloud.scans == 0) return fail("there are no scans to write", file, "choose at least one scan");
 
+  auto scale = options.scale;
+  if (!scale) {
+    const auto found =
+        colourScale(cloud, format == CloudFormat::Uos ? CloudColour::None : options.colour, control);
+    if (!found) return fail(found.error());
+    scale = *found;
+  }
+  const MatrixOptions matrix{options.double_precision, PointColours(options.colour, *scale), file};
+
   if (format == CloudFormat::Uos) {
     const auto scan = onlyScan(cloud, file);
     if (!scan) return fail(scan.error());
     return writeFileAtomically(path, [&](std::ostream& out) -> Status {
-      if (auto written = writeUos(out, *scan); !written || !out.flush()) return written;
+      if (auto written = writeUos(out, *scan, matrix, control); !written || !out.flush()) return written;
       // The pose only when the points are complete, and before their file takes its name.
       auto pose_path = path;
       return writePose3dtk(pose_path.replace_extension(".pose"), scan->world_from_scan);
     });
   }
   if (format == CloudFormat::Ptx)
-    return writeFileAtomically(path, [&](std::ostream& out) { return writePtx(out, cloud, file, control); });
+    return writeFileAtomically(path,
+                               [&](std::ostream& out) { return writePtx(out, cloud, matrix, control); });
   if (cloud.scans == 1 && (format == CloudFormat::Pcd || format == CloudFormat::Ply)) {
     const auto scan = cloud.scan(0);
     if (!scan) return fail(scan.error());
-    const bool matrix =
-        scan->image && scan->image->isMatrix() && !cloud.normals && options.colour == CloudColour::None;
-    if (matrix && control.stopRequested()) return fail(kCancelled, file, "start again when you like");
-    if (matrix)
+    if (scan->image && scan->image->isMatrix() && !cloud.normals)
       return writeFileAtomically(path, [&](std::ostream& out) {
-        return format == CloudFormat::Pcd ? writeOrganisedPcd(out, *scan, options.double_precision)
-                                          : writeOrganisedPly(out, *scan, options.double_precision);
+        return format == CloudFormat::Pcd ? writeOrganisedPcd(out, *scan, matrix, control)
+                                          : writeOrganisedPly(out, *scan, matrix, control);
       });
   }
-  const auto stream = CloudStream::prepare(cloud, options, file, control);
+  const auto stream = CloudStream::prepare(cloud, options, matrix.colours, file, control);
   if (!stream) return fail(stream.error());
   return writeFileAtomically(path, [&](std::ostream& out) { return writeMerged(out, format, *stream); });
 }

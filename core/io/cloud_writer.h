@@ -59,22 +59,35 @@ struct CloudForExport {
 // From scans in memory; intensity and normals are written when any scan has them.
 CloudForExport cloudForExport(std::vector<ExportScan> scans);
 
+// What becomes the first and the last colour: heights in the world (m) or intensities.
+struct ColourScale {
+  double low = 0.0, high = 1.0;
+};
+
 struct WriteOptions {
   std::optional<CloudFormat> format;  // nothing: by extension
   CloudColour colour = CloudColour::None;
+  // For CloudColour::Height and Intensity; nothing: colourScale of what is written.
+  std::optional<ColourScale> scale = std::nullopt;
   // PLY, PCD, VTK: coordinates as 8-byte floats, for maps in national grid coordinates; 4-byte floats, which
   // every reader takes, hold 0.1 mm up to 1 km from the origin.
   bool double_precision = false;
 };
 
+// The scale over 1 to 99 % of the points, so that several files of one survey can share it. Error: a scan
+// that cannot be had, cancelled.
+Result<ColourScale> colourScale(const CloudForExport& cloud, CloudColour colour,
+                                const JobControl& control = {});
+
 // Writes beside `path` and renames when complete: on an Error (full disk, no permission, cancelled, a scan
 // that cannot be had) the file that was there before is untouched and no other is left.
 //
-// A single scan whose `image` is a matrix stays one: as organised PCD (HEIGHT = rows, cells without a point
-// NaN, scan frame, the pose as VIEWPOINT), as PLY with a range_grid and the pose in a comment (vertices in
-// the world frame, which a comment tells), unless normals or colours are to be written. So does every scan in
-// a PTX (cells without a point 0 0 0; intensity as it is, 0.5 where there is none) and the one of a .3d (at
-// the origin; .pose beside it). Everything else holds points in the world frame. XYZ has no normals.
+// A single scan whose `image` is a matrix stays one, unless normals are to be written: as organised PCD
+// (HEIGHT = rows, cells without a point NaN, scan frame, the pose as VIEWPOINT), and as PLY with a range_grid
+// and the pose in a comment (vertices in the world frame, which a comment tells). So does every scan in a PTX
+// (cells without a point 0 0 0; intensity as it is, 0.5 where there is none) and the one of a .3d (at the
+// origin; .pose beside it). Everything else holds points in the world frame. XYZ has no normals, 3D no
+// colours.
 Status writeCloud(const std::filesystem::path& path, const CloudForExport& cloud,
                   const WriteOptions& options = {}, const JobControl& control = {});
 

@@ -1,5 +1,4 @@
 // Clouds in the world frame, all scans in one: PLY, PCD, XYZ, CSV, VTK.
-#include <cstring>
 #include <stdexcept>
 
 #include "core/io/cloud_stream.h"
@@ -19,14 +18,6 @@ void appendVector(std::string& bytes, const Eigen::Vector3d& v, bool doubles) {
     else
       appendBytes(bytes, static_cast<float>(v[k]));
   }
-}
-
-// PCL's way to put a colour into a float: the bytes 0 r g b of a 32-bit word.
-float packedColour(const std::array<std::uint8_t, 3>& c) {
-  const std::uint32_t word = (std::uint32_t{c[0]} << 16) | (std::uint32_t{c[1]} << 8) | c[2];
-  float value = 0.0F;
-  std::memcpy(&value, &word, sizeof(value));
-  return value;
 }
 
 void appendText(std::string& line, const ExportPoint& point, const ExportLayout& layout, char separator,

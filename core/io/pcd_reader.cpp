@@ -10,6 +10,7 @@
 #include <pcl/io/pcd_io.h>
 
 #include "core/base/text.h"
+#include "core/io/pcd_header.h"
 #include "core/io/point_table.h"
 #include "core/io/text_cursor.h"
 
@@ -17,192 +18,8 @@ namespace tiltmap {
 
 namespace {
 
-enum class Body { Ascii, Binary, Compressed };
-
-struct Field {
-  std::string name;
-  int size = 0;
-  char type = 'F';
-  long long count = 1;
-};
-
-struct Header {
-  std::vector<Field> fields;
-  long long width = -1, height = -1, points = -1;
-  std::optional<Pose> viewpoint;
-  Body body = Body::Ascii;
-  std::size_t body_at = 0;       // byte
-  std::size_t header_lines = 0;  // lines up to and with DATA
-
-  std::size_t pointBytes() const {
-    std::size_t sum = 0;
-    for (const Field& field : fields)
-      sum += static_cast<std::size_t>(field.size) * static_cast<std::size_t>(field.count);
-    return sum;
-  }
-  std::size_t pointWords() const {
-    std::size_t sum = 0;
-    for (const Field& field : fields) sum += static_cast<std::size_t>(field.count);
-    return sum;
-  }
-};
-
-// Bounds the arithmetic: no sum or product of sizes below can overflow.
-constexpr long long kMostCount = 10000;
-constexpr std::size_t kMostFields = 1000;
-
-class HeaderParser {
- public:
-  HeaderParser(std::string_view bytes, const ParseContext& context) : cursor_(bytes), context_(context) {}
-
-  Result<Header> parse() {
-    std::string_view line;
-    while (cursor_.nextLine(line)) {
-      const std::string_view text = trimmed(line);
-      if (text.empty() || text.front() == '#') continue;
-      const std::vector<std::string_view> words = splitWords(text);
-      if (auto done = entry(words); !done) return fail(done.error());
-      if (words.front() == "DATA") return finished();
-    }
-    return context_.refuse("the header has no DATA line", {},
-                           "this is not a complete PCD file; export it again");
-  }
-
- private:
-  tl::unexpected<Error> bad(std::string what) const {
-    return context_.refuseLine(std::move(what), cursor_.lineNumber());
-  }
-
-  Status entry(const std::vector<std::string_view>& words) {
-    std::string name(words.front());
-    if (name == "COLUMNS") name = "FIELDS";
-    if (std::ranges::find(seen_, name) != seen_.end()) return bad("the header has two lines " + name);
-    seen_.push_back(name);
-    const std::vector<std::string_view> values(words.begin() + 1, words.end());
-    if (values.empty()) return bad("the header line " + printable(name) + " has no value");
-    if (name == "VERSION") return {};
-    if (name == "FIELDS") return fields(values);
-    if (name == "SIZE")
-      return perField(values, 1, 8, [](Field& field, long long v) { field.size = static_cast<int>(v); });
-    if (name == "COUNT")
-      return perField(values, 1, kMostCount, [](Field& field, long long v) { field.count = v; });
-    if (name == "TYPE") return types(values);
-    if (name == "VIEWPOINT") return viewpoint(values);
-    if (name == "WIDTH") return number(values, header_.width);
-    if (name == "HEIGHT") return number(values, header_.height);
-    if (name == "POINTS") return number(values, header_.points);
-    if (name == "DATA") return data(values);
-    return bad("the header has an unknown line " + printable(name));
-  }
-  Status fields(const std::vector<std::string_view>& values) {
-    if (values.size() > kMostFields) return bad("the header names too many fields");
-    for (const std::string_view name : values) {
-      for (const Field& field : header_.fields)
-        if (name != "_" && field.name == name) return bad("the field " + printable(name) + " is there twice");
-      header_.fields.push_back({std::string(name), 0, 'F', 1});
-    }
-    return {};
-  }
-  template <class Set>
-  Status perField(const std::vector<std::string_view>& values, long long least, long long most, Set set) {
-    if (values.size() != header_.fields.size())
-      return bad("the header has " + std::to_string(header_.fields.size()) +
-                 " fields, but this line tells of " + std::to_string(values.size()));
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto value = parseInteger(values[i]);
-      if (!value || *value < least || *value > most)
-        return bad(printable(values[i]) + " is not a whole number from " + std::to_string(least) + " to " +
-                   std::to_string(most));
-      set(header_.fields[i], *value);
-    }
-    return {};
-  }
-  Status types(const std::vector<std::string_view>& values) {
-    if (values.size() != header_.fields.size())
-      return bad("the header has " + std::to_string(header_.fields.size()) +
-                 " fields, but this line tells of " + std::to_string(values.size()));
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (values[i] != "F" && values[i] != "I" && values[i] != "U")
-        return bad("the type " + printable(values[i]) + " is none of F, I, U");
-      header_.fields[i].type = values[i].front();
-    }
-    return {};
-  }
-  Status number(const std::vector<std::string_view>& values, long long& to) {
-    const auto value = values.size() == 1 ? parseInteger(values.front()) : std::nullopt;
-    if (!value) return bad("one whole number is expected here");
-    if (*value < 1) return bad("the count " + std::to_string(*value) + " leaves no points");
-    if (*value > kMostCells) return bad("the count " + std::to_string(*value) + " is above 100 million");
-    to = *value;
-    return {};
-  }
-  Status viewpoint(const std::vector<std::string_view>& values) {
-    std::array<double, 7> v{};
-    if (values.size() != v.size()) return bad("VIEWPOINT needs seven numbers: x y z qw qx qy qz");
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      const auto value = parseReal(values[i]);
-      if (!value || !std::isfinite(*value)) return bad(printable(values[i]) + " is not a finite number");
-      v[i] = *value;
-    }
-    const Eigen::Quaterniond rotation(v[3], v[4], v[5], v[6]);
-    if (!(std::abs(rotation.norm() - 1.0) < 0.01))
-      return bad("the quaternion of VIEWPOINT is not of length 1");
-    const Pose pose(rotation, Eigen::Vector3d(v[0], v[1], v[2]));
-    const PoseDifference away = difference(pose, Pose());
-    if (away.translation_m > 0.0 || away.rotation_rad > 0.0) header_.viewpoint = pose;
-    return {};
-  }
-  Status data(const std::vector<std::string_view>& values) {
-    const std::string_view kind = values.size() == 1 ? values.front() : std::string_view();
-    if (kind == "ascii")
-      header_.body = Body::Ascii;
-    else if (kind == "binary")
-      header_.body = Body::Binary;
-    else if (kind == "binary_compressed")
-      header_.body = Body::Compressed;
-    else
-      return bad("DATA must be ascii, binary or binary_compressed");
-    return {};
-  }
-  bool saw(const char* name) const { return std::ranges::find(seen_, name) != seen_.end(); }
-
-  Result<Header> finished() {
-    for (const char* name : {"FIELDS", "SIZE", "TYPE", "WIDTH", "POINTS"})
-      if (!saw(name)) return context_.refuse(std::string("the header has no line ") + name);
-    if (header_.height < 0) header_.height = 1;
-    if (header_.width * header_.height != header_.points)
-      return context_.refuse("WIDTH times HEIGHT is " + std::to_string(header_.width * header_.height) +
-                             ", but POINTS is " + std::to_string(header_.points));
-    for (const Field& field : header_.fields) {
-      const bool fits = field.type == 'F'
-                            ? field.size == 4 || field.size == 8
-                            : field.size == 1 || field.size == 2 || field.size == 4 || field.size == 8;
-      if (!fits)
-        return context_.refuse("the field " + printable(field.name) + " has the type " + field.type + " of " +
-                               std::to_string(field.size) + " bytes, which does not exist");
-    }
-    for (const char* axis : {"x", "y", "z"}) {
-      const auto field = std::ranges::find(header_.fields, axis, &Field::name);
-      if (field == header_.fields.end())
-        return context_.refuse(std::string("there is no field ") + axis, {},
-                               "export it with the fields x y z");
-      if (field->type != 'F' || field->count != 1)
-        return context_.refuse(std::string("the field ") + axis + " is not one floating point number a point",
-                               {}, "export it with x y z of type F, in metres");
-    }
-    header_.body_at = cursor_.position();
-    header_.header_lines = cursor_.lineNumber();
-    return header_;
-  }
-
-  TextCursor cursor_;
-  const ParseContext& context_;
-  Header header_;
-  std::vector<std::string> seen_;
-};
-
 // Whole-numbered fields may be printed with a decimal point, but must lie in the range of their type.
-bool fits(double value, const Field& field) {
+bool fits(double value, const PcdField& field) {
   if (field.type == 'F') return field.size == 8 || !std::isfinite(value) || std::abs(value) <= 3.4e38;
   const double half = std::ldexp(1.0, 8 * field.size - 1);
   return field.type == 'I' ? value >= -half && value < half : value >= 0.0 && value < 2.0 * half;
@@ -210,7 +27,7 @@ bool fits(double value, const Field& field) {
 
 // Exactly one line a point, exactly the fields a line, every word a number of its type; blank lines at the
 // end only.
-Status checkAscii(std::string_view bytes, const Header& header, const ParseContext& context) {
+Status checkAscii(std::string_view bytes, const PcdHeader& header, const ParseContext& context) {
   TextCursor cursor(bytes.substr(header.body_at));
   std::string_view line;
   for (long long point = 0; point < header.points; ++point) {
@@ -221,7 +38,7 @@ Status checkAscii(std::string_view bytes, const Header& header, const ParseConte
           "the file ends after " + std::to_string(point) + " of " + std::to_string(header.points) + " points",
           number);
     std::string_view word;
-    for (const Field& field : header.fields) {
+    for (const PcdField& field : header.fields) {
       for (long long k = 0; k < field.count; ++k) {
         if (!TextCursor::takeWord(line, word))
           return context.refuseLine(
@@ -275,7 +92,7 @@ std::optional<std::size_t> lzfLength(std::string_view packed) {
   return length;
 }
 
-Status checkBinary(std::string_view bytes, const Header& header, const ParseContext& context) {
+Status checkBinary(std::string_view bytes, const PcdHeader& header, const ParseContext& context) {
   const std::string_view body = bytes.substr(header.body_at);
   const std::size_t full = static_cast<std::size_t>(header.points) * header.pointBytes();
   const auto wrongLength = [&](std::size_t is, std::size_t should) {
@@ -283,7 +100,7 @@ Status checkBinary(std::string_view bytes, const Header& header, const ParseCont
                                   " bytes of points, but there are " + std::to_string(is),
                               header.body_at);
   };
-  if (header.body == Body::Binary) {
+  if (header.body == PcdBody::Binary) {
     if (looksLikePrintedNumbers(body))
       return context.refuseByte("the header says binary, but the points are printed text", header.body_at,
                                 "correct the DATA line to ascii, or export it again");
@@ -297,7 +114,7 @@ Status checkBinary(std::string_view bytes, const Header& header, const ParseCont
     return context.refuseByte("it should hold " + std::to_string(packed) +
                                   " compressed bytes, but there are " + std::to_string(body.size() - 8),
                               header.body_at);
-  for (const Field& field : header.fields)
+  for (const PcdField& field : header.fields)
     if (field.name == "_")
       return context.refuse("compressed points have unnamed fields", {},
                             "export it again without compression");
@@ -336,24 +153,8 @@ double scalarAt(const std::uint8_t* at, const pcl::PCLPointField& field) {
   }
 }
 
-// The header again, in the one spelling that PCL and we cannot read in two ways.
-std::string plainHeader(const Header& header) {
-  std::string fields = "FIELDS", sizes = "SIZE", types = "TYPE", counts = "COUNT";
-  for (const Field& field : header.fields) {
-    fields += " " + field.name;
-    sizes += " " + std::to_string(field.size);
-    types += std::string(" ") + field.type;
-    counts += " " + std::to_string(field.count);
-  }
-  const char* const kinds[] = {"ascii", "binary", "binary_compressed"};
-  return "VERSION 0.7\n" + fields + "\n" + sizes + "\n" + types + "\n" + counts + "\nWIDTH " +
-         std::to_string(header.width) + "\nHEIGHT " + std::to_string(header.height) +
-         "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(header.points) + "\nDATA " +
-         kinds[static_cast<int>(header.body)] + "\n";
-}
-
 // The points, decoded by PCL from memory that has been checked: nothing can change between check and use.
-Result<pcl::PCLPointCloud2> decoded(std::string_view bytes, const Header& header,
+Result<pcl::PCLPointCloud2> decoded(std::string_view bytes, const PcdHeader& header,
                                     const ParseContext& context) {
   pcl::PCLPointCloud2 cloud;
   Eigen::Vector4f origin;
@@ -366,17 +167,17 @@ Result<pcl::PCLPointCloud2> decoded(std::string_view bytes, const Header& header
                           "export it again, as ascii if need be");
   };
   try {
-    std::istringstream header_stream(plainHeader(header));
+    std::istringstream header_stream(plainPcdHeader(header));
     if (reader.readHeader(header_stream, cloud, origin, orientation, version, data_type, body_at) != 0)
       return bad();
     if (cloud.data.size() != static_cast<std::size_t>(header.points) * header.pointBytes()) return bad();
     int outcome = 0;
-    if (header.body == Body::Ascii) {
+    if (header.body == PcdBody::Ascii) {
       std::istringstream body(std::string(bytes.substr(header.body_at)));
       outcome = reader.readBodyASCII(body, cloud, version);
     } else {
       const auto* body = reinterpret_cast<const unsigned char*>(bytes.data());
-      outcome = reader.readBodyBinary(body, cloud, version, header.body == Body::Compressed,
+      outcome = reader.readBodyBinary(body, cloud, version, header.body == PcdBody::Compressed,
                                       static_cast<unsigned int>(header.body_at));
     }
     if (outcome != 0) return bad();
@@ -389,10 +190,10 @@ Result<pcl::PCLPointCloud2> decoded(std::string_view bytes, const Header& header
 }  // namespace
 
 Result<Tables> parsePcd(std::string_view bytes, const ParseContext& context) {
-  const auto header = HeaderParser(bytes, context).parse();
+  const auto header = parsePcdHeader(bytes, context);
   if (!header) return fail(header.error());
-  const Status checked = header->body == Body::Ascii ? checkAscii(bytes, *header, context)
-                                                     : checkBinary(bytes, *header, context);
+  const Status checked = header->body == PcdBody::Ascii ? checkAscii(bytes, *header, context)
+                                                        : checkBinary(bytes, *header, context);
   if (!checked) return fail(checked.error());
   const auto cloud = decoded(bytes, *header, context);
   if (!cloud) return fail(cloud.error());
@@ -424,7 +225,7 @@ Result<Tables> parsePcd(std::string_view bytes, const ParseContext& context) {
     if (intensity) table.intensity[i] = static_cast<float>(scalarAt(point + intensity->offset, *intensity));
   }
   std::vector<std::string> ignored;
-  for (const Field& field : header->fields) {
+  for (const PcdField& field : header->fields) {
     const bool used = field.name == "x" || field.name == "y" || field.name == "z" || field.name == "_" ||
                       (intensity && field.name == intensity->name);
     if (!used) ignored.push_back(field.name);

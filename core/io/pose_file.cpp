@@ -118,21 +118,27 @@ Status writePosesCsv(const std::filesystem::path& path, const IndexedPoses& worl
   return writeFileAtomically(path, posesCsvText(world_from_scan));
 }
 
-Status writePosesKitti(const std::filesystem::path& path, const IndexedPoses& world_from_scan) {
+Result<std::string> posesKittiText(const IndexedPoses& world_from_scan, const std::string& where) {
   std::string text;
   int expected = world_from_scan.empty() ? 0 : world_from_scan.begin()->first;
   for (const auto& [index, pose] : world_from_scan) {
     checkFinite(pose);
     if (index != expected++)
       return fail(
-          "there is no pose of scan " + std::to_string(expected - 1), path.string(),
+          "there is no pose of scan " + std::to_string(expected - 1), where,
           "KITTI files have a line for every scan: write TUM, which has indices, or register all scans");
     const Eigen::Matrix4d m = pose.matrix();
     for (int row = 0; row < 3; ++row)
       for (int column = 0; column < 4; ++column)
         text += shortestReal(m(row, column)) + (row == 2 && column == 3 ? '\n' : ' ');
   }
-  return writeFileAtomically(path, text);
+  return text;
+}
+
+Status writePosesKitti(const std::filesystem::path& path, const IndexedPoses& world_from_scan) {
+  return posesKittiText(world_from_scan, path.string()).and_then([&](const std::string& text) {
+    return writeFileAtomically(path, text);
+  });
 }
 
 Eigen::Vector3d pointFrom3dtk(const Eigen::Vector3d& point_cm) {
@@ -206,6 +212,26 @@ Status writeFrames3dtk(const std::filesystem::path& path, const Pose& world_from
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 4; ++row) text += shortestReal(m(row, column)) + ' ';
   return writeFileAtomically(path, text + "2\n");
+}
+
+Result<std::vector<std::string>> writePoses3dtk(const std::filesystem::path& folder, Poses3dtk kind,
+                                                const IndexedPoses& world_from_scan) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder))
+    return fail("the folder cannot be made" + (error ? ": " + error.message() : ""), folder.string(),
+                "choose another name, or a place where you may write");
+  std::vector<std::string> files;
+  for (const auto& [index, pose] : world_from_scan) {
+    std::string number = std::to_string(index);
+    if (number.size() < 3) number.insert(0, 3 - number.size(), '0');
+    const bool frames = kind == Poses3dtk::FramesFiles;
+    const auto path = folder / ("scan" + number + (frames ? ".frames" : ".pose"));
+    if (Status status = frames ? writeFrames3dtk(path, pose) : writePose3dtk(path, pose); !status)
+      return fail(status.error());
+    files.push_back(path.string());
+  }
+  return files;
 }
 
 }  // namespace tiltmap

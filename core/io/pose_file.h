@@ -34,6 +34,9 @@ Status writePosesCsv(const std::filesystem::path& path, const IndexedPoses& worl
 // refused.
 Status writePosesKitti(const std::filesystem::path& path, const IndexedPoses& world_from_scan);
 
+// Its text; the Error names the gap and `where`.
+Result<std::string> posesKittiText(const IndexedPoses& world_from_scan, const std::string& where);
+
 // The text TUM lines that writePosesTum writes, for standard output.
 std::string posesTumText(const IndexedPoses& world_from_scan);
 std::string posesCsvText(const IndexedPoses& world_from_scan);
@@ -56,5 +59,11 @@ Status writePose3dtk(const std::filesystem::path& path, const Pose& world_from_s
 // A .frames file: the pose as a column-major 4 x 4 matrix in 3DTK's frame and a number for its colour (2:
 // final).
 Status writeFrames3dtk(const std::filesystem::path& path, const Pose& world_from_scan);
+
+enum class Poses3dtk { PoseFiles, FramesFiles };
+// One a scan, scan000.pose or scan000.frames and so on, into the folder, which is made where it is missing.
+// Returns the files' paths.
+Result<std::vector<std::string>> writePoses3dtk(const std::filesystem::path& folder, Poses3dtk kind,
+                                                const IndexedPoses& world_from_scan);
 
 }  // namespace tiltmap

@@ -244,8 +244,10 @@ class VtkParser {
   }
   // Whether that many values can be there at all, before anything is allocated for them.
   Status room(long long number, const Type* type) const {
+    // A printed number takes a digit and a blank, but for the last one.
     const std::size_t least = binary_ ? type->bytes : 2;
-    if (static_cast<unsigned long long>(number) > (cursor_.remaining() + 1) / least)
+    const std::size_t left = cursor_.remaining() + (binary_ ? 0 : 1);
+    if (static_cast<unsigned long long>(number) > left / least)
       return bad("the header tells of " + std::to_string(number) +
                  " numbers, more than the rest of the file can hold");
     return {};

@@ -1,6 +1,7 @@
 #include "core/project/project_edit.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <unordered_map>
 
 namespace tiltmap {
@@ -53,6 +54,18 @@ ProjectEdit surveyEdit(SurveyInfo survey) {
 
 ProjectEdit linkStateEdit(LinkId link, LinkState state) {
   return oneStep(state == LinkState::Active ? "enable a link" : "disable a link", SetLinkState{link, state});
+}
+
+ProjectEdit acceptLinkEdit(const Link& link) {
+  if (!link.succeeded) throw std::invalid_argument("a link that did not succeed has nothing to accept");
+  Link accepted = link;
+  accepted.origin = LinkOrigin::ByHand;
+  accepted.state = LinkState::Active;
+  ProjectEdit edit;
+  edit.title = "accept a link";
+  edit.steps.emplace_back(DeleteLinks{{link.id}});
+  edit.steps.emplace_back(AddLinks{{std::move(accepted)}, true});
+  return edit;
 }
 
 ProjectEdit registerEdit(SnapshotPtr base, std::vector<Link> links,
@@ -142,10 +155,20 @@ ProjectEdit mergeEdit(const ProjectSnapshot& into, const ProjectSnapshot& other,
   fill(survey.operator_name, other.survey().operator_name);
   fill(survey.device, other.survey().device);
   fill(survey.date, other.survey().date);
-  if (!survey.site_from_world) survey.site_from_world = other.survey().site_from_world;
+  if (const auto& site_from_other = other.survey().site_from_world;
+      !survey.site_from_world && site_from_other)
+    survey.site_from_world = *site_from_other * world_from_other_world.inverse();
   if (!(survey == into.survey())) edit.steps.push_back(SetSurvey{survey});
   edit.jobs = other.jobs();
   return edit;
+}
+
+std::optional<Pose> mergePlacement(const ProjectSnapshot& into, const ProjectSnapshot& other) {
+  if (into.scans().empty() && !into.survey().site_from_world) return Pose();
+  const auto& ours = into.survey().site_from_world;
+  const auto& theirs = other.survey().site_from_world;
+  if (!ours || !theirs) return std::nullopt;
+  return ours->inverse() * *theirs;
 }
 
 }  // namespace tiltmap

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -112,6 +113,9 @@ ProjectEdit renameEdit(ScanId scan, std::string name);
 ProjectEdit noteEdit(ScanId scan, std::string note);
 ProjectEdit surveyEdit(SurveyInfo survey);
 ProjectEdit linkStateEdit(LinkId link, LinkState state);
+// A person vouches for what was found: the link becomes one set by hand, which registering again leaves
+// alone. It is active afterwards. Throws std::invalid_argument for a link that did not succeed.
+ProjectEdit acceptLinkEdit(const Link& link);
 // Links found and the poses chained from them; the stage `relaxed` computed from older links is cleared.
 ProjectEdit registerEdit(SnapshotPtr base, std::vector<Link> links,
                          std::vector<std::pair<ScanId, Pose>> pairwise);
@@ -125,6 +129,10 @@ Result<ProjectEdit> rebaseEdit(SnapshotPtr base, ScanId scan, const Pose& world_
 // applied.
 ProjectEdit mergeEdit(const ProjectSnapshot& into, const ProjectSnapshot& other,
                       const Pose& world_from_other_world = Pose());
+
+// Where the other project's world stands in this one's, for mergeEdit: known where both tell their place in
+// the frame that imported poses came in, and the identity where this one has no scans yet.
+std::optional<Pose> mergePlacement(const ProjectSnapshot& into, const ProjectSnapshot& other);
 
 // What an edit, an undo or a redo changed.
 struct Change {

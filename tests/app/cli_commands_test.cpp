@@ -133,6 +133,46 @@ TEST_F(Cli, PosesInEveryFormat) {
               0.0, 1e-12);
 }
 
+TEST_F(Cli, PosesForOtherPrograms) {
+  simulate("exp1");
+  std::istringstream kitti(run({"poses", "p.tiltmap", "--format", "kitti"}).out);
+  std::vector<double> numbers;
+  for (double v = 0.0; kitti >> v;) numbers.push_back(v);
+  EXPECT_EQ(numbers.size(), 5U * 12U);
+  EXPECT_EQ(numbers[0], 1.0);
+  ASSERT_EQ(run({"poses", "p.tiltmap", "--format", "tum", "--out", "p.tum"}).exit_code, 0);
+  EXPECT_EQ(fileText(folder_.path() / "p.tum"), run({"poses", "p.tiltmap", "--format", "tum"}).out);
+  EXPECT_EQ(object({"poses", "p.tiltmap", "--format", "pose", "--out", "poses"})["files"].size(), 5U);
+  const json listed = object({"poses", "p.tiltmap"})["poses"][4]["translation_m"];
+  std::istringstream pose(fileText(folder_.path() / "poses/scan004.pose"));
+  double x = 0.0, y = 0.0, z = 0.0;
+  ASSERT_TRUE(pose >> x >> y >> z);
+  // Left-handed, y up, centimetres.
+  EXPECT_NEAR(x, 100.0 * listed[0].get<double>(), 1e-6);
+  EXPECT_NEAR(y, 100.0 * listed[2].get<double>(), 1e-6);
+  EXPECT_NEAR(z, 100.0 * listed[1].get<double>(), 1e-6);
+  ASSERT_EQ(run({"poses", "p.tiltmap", "--format", "frames", "--out", "poses"}).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "poses/scan000.frames"));
+  EXPECT_EQ(run({"poses", "p.tiltmap", "--format", "pose"}).exit_code, 2);
+  EXPECT_EQ(run({"poses", "p.tiltmap", "--format", "tum", "--out", "no/folder/p.tum"}).exit_code, 1);
+}
+
+TEST_F(Cli, ExportOneFileAScanForThreeDtk) {
+  simulate("exp1");
+  const json report = object({"export", "p.tiltmap", "scan.3d", "--per-scan"});
+  EXPECT_EQ(report["files"].size(), 10U) << "five clouds and their poses";
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "scan004.pose"));
+  ASSERT_EQ(run({"new", "back.tiltmap"}).exit_code, 0);
+  ASSERT_EQ(run({"import", "back.tiltmap", "scan000.3d", "scan001.3d"}).exit_code, 0);
+  const json info = object({"info", "p.tiltmap"}), back = object({"info", "back.tiltmap"});
+  for (std::size_t i = 0; i < 2; ++i)
+    for (const char* key : {"rows", "columns", "valid"})
+      EXPECT_EQ(info["scans"][i][key], back["scans"][i][key]);
+  const ProgramRun merged = run({"export", "p.tiltmap", "all.3d"});
+  EXPECT_EQ(merged.exit_code, 1);
+  EXPECT_NE(merged.err.find("--per-scan"), std::string::npos) << merged.err;
+}
+
 TEST_F(Cli, SameSeedSameSurveyOtherSeedAnother) {
   simulate("exp1", 3, "a.tiltmap");
   simulate("exp1", 3, "b.tiltmap");

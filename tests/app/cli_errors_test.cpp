@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "core/project/project.h"
 #include "tests/support/program.h"
 
 namespace tiltmap::test {
@@ -93,6 +94,56 @@ TEST_F(CliErrors, ARefusedCommandLeavesTheProjectAsItWas) {
   refused({"export", "p.tiltmap", "no/folder/map.ply"}, 1, "no/folder");
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "map.ply"));
   EXPECT_EQ(info(), before);
+}
+
+TEST_F(CliErrors, WhileAnotherWritesReadingWorksAndWritingIsRefused) {
+  ASSERT_EQ(run({"new", "p.tiltmap"}).exit_code, 0);
+  ASSERT_EQ(run({"simulate", "p.tiltmap", "--experiment", "exp1"}).exit_code, 0);
+  const auto writer = Project::open(folder_.path() / "p.tiltmap", Access::ReadWrite);
+  ASSERT_TRUE(writer);
+  ASSERT_TRUE((*writer)->apply(renameEdit((*writer)->snapshot()->scans()[0].id, "by the writer")));
+  const std::string before = info();
+  EXPECT_NE(before.find("by the writer"), std::string::npos);
+  for (const auto& words : std::vector<std::vector<std::string>>{{"rename", "p.tiltmap", "0", "x"},
+                                                                 {"register", "p.tiltmap"},
+                                                                 {"delete", "p.tiltmap", "0"},
+                                                                 {"undo", "p.tiltmap"},
+                                                                 {"compact", "p.tiltmap"}})
+    refused(words, 1, "elsewhere");
+  for (const auto& words : std::vector<std::vector<std::string>>{{"poses", "p.tiltmap"},
+                                                                 {"history", "p.tiltmap"},
+                                                                 {"verify", "p.tiltmap"},
+                                                                 {"copy", "p.tiltmap", "copy.tiltmap"},
+                                                                 {"export", "p.tiltmap", "map.ply"}})
+    EXPECT_EQ(run(words).exit_code, 0) << words[0];
+  EXPECT_EQ(info(), before);
+}
+
+// One writing and one reading command on each kind of file that is no project of ours to change.
+TEST_F(CliErrors, FilesThatAreNoProjectsAreLeftAsTheyAre) {
+  ASSERT_EQ(run({"new", "p.tiltmap"}).exit_code, 0);
+  const std::string whole = fileText(folder_.path() / "p.tiltmap");
+  std::string newer = whole, foreign = whole;
+  newer[63] = 99;     // user_version, the last of its four bytes
+  foreign[71] = 'X';  // application_id
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"empty", ""},
+      {"garbage", std::string(70000, 'x')},
+      {"truncated", whole.substr(0, whole.size() / 2)},
+      {"newer", newer},
+      {"foreign", foreign},
+      {"header", whole.substr(0, 50)}};
+  for (const auto& [name, bytes] : files) {
+    const std::string file = name + ".tiltmap";
+    writeFile(folder_.path() / file, bytes);
+    refused({"info", file}, 1, file);
+    refused({"survey", file, "--site", "x"}, 1, file);
+    refused({"compact", file}, 1, file);
+    refused({"new", file}, 1, file);
+    refused({"copy", file, name + "2.tiltmap"}, 1, file);
+    EXPECT_EQ(fileText(folder_.path() / file), bytes) << name;
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / (name + "2.tiltmap")));
+  }
 }
 
 TEST_F(CliErrors, QuietSaysNothingButResults) {

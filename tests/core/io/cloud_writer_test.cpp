@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/io/pose_file.h"
+#include "export_samples.h"
 #include "support/temporary_folder.h"
 
 namespace tiltmap {
@@ -136,6 +137,47 @@ TEST_P(StreamedFormat, StopsWhenAskedAndLeavesTheOldFile) {
   EXPECT_EQ(status.error().what, kCancelled);
   EXPECT_EQ(bytesOf(path), "before");
   EXPECT_EQ(folder.entries(), 1U);
+}
+
+// Formats of one scan, its matrix kept.
+class OneScanFormat : public testing::TestWithParam<const char*> {};
+
+TEST_P(OneScanFormat, StopsWhenAskedAndLeavesNothing) {
+  const TemporaryFolder folder;
+  std::stop_source stop;
+  const JobControl control{[&](const Progress&) { stop.request_stop(); }, stop.get_token()};
+  const auto status =
+      writeCloud(folder / (std::string("a.") + GetParam()), cloudForExport({sweep(1)}), {}, control);
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().what, kCancelled);
+  EXPECT_EQ(folder.entries(), 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, OneScanFormat, testing::Values("ply", "pcd", "ptx", "3d"),
+                         [](const auto& test) {
+                           return test.param == std::string("3d") ? "uos" : std::string(test.param);
+                         });
+
+TEST(CloudWriter, SeveralFilesMayShareAColourScale) {
+  const TemporaryFolder folder;
+  const std::vector<ExportScan> scans{threePoints(0, Pose()),
+                                      threePoints(1, Pose(Eigen::Quaterniond::Identity(), {0, 0, 30}))};
+  const auto scale = colourScale(cloudForExport(scans), CloudColour::Height);
+  ASSERT_TRUE(scale);
+  EXPECT_EQ(scale->low, 0.0);
+  EXPECT_EQ(scale->high, 33.0);
+  WriteOptions options;
+  options.colour = CloudColour::Height;
+  options.scale = *scale;
+  ASSERT_TRUE(writeCloud(folder / "low.xyz", cloudForExport({scans[0]}), options));
+  // All of the low scan is at the blue end, though its own top is 3 m above its floor.
+  std::istringstream words(bytesOf(folder / "low.xyz"));
+  for (int point = 0; point < 3; ++point) {
+    double x, y, z, r, g, b;
+    ASSERT_TRUE(words >> x >> y >> z >> r >> g >> b);
+    EXPECT_GT(b, 200);
+    EXPECT_EQ(r, 0);
+  }
 }
 
 // A limit on the size of files stands in for a disk that is full.

@@ -194,5 +194,23 @@ TEST(Frames3dtk, HoldTheColumnMajorMatrixInTheirFrame) {
   EXPECT_EQ(v[16], 2.0);
 }
 
+TEST(Poses3dtk, OneFileAScanInAFolderThatIsMade) {
+  const TemporaryFolder folder;
+  const IndexedPoses poses{{0, Pose()}, {1, Pose::planar(1.5, 2.5, 0.7)}, {1234, Pose::planar(-3, 0, -2)}};
+  const auto files = writePoses3dtk(folder / "out/poses", Poses3dtk::PoseFiles, poses);
+  ASSERT_TRUE(files) << files.error().what;
+  ASSERT_EQ(files->size(), 3U);
+  EXPECT_EQ(std::filesystem::path((*files)[1]).filename(), "scan001.pose");
+  EXPECT_EQ(std::filesystem::path((*files)[2]).filename(), "scan1234.pose");
+  const auto back = readPose3dtk((*files)[1]);
+  ASSERT_TRUE(back);
+  EXPECT_LT(difference(*back, poses.at(1)).translation_m, 1e-9);
+  EXPECT_LT(difference(*back, poses.at(1)).rotation_rad, 1e-7);
+  ASSERT_TRUE(writePoses3dtk(folder / "out/frames", Poses3dtk::FramesFiles, poses));
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/frames/scan000.frames"));
+  folder.write("file", "x");
+  EXPECT_FALSE(writePoses3dtk(folder / "file", Poses3dtk::PoseFiles, poses));
+}
+
 }  // namespace
 }  // namespace tiltmap

@@ -1,4 +1,5 @@
 // What is written comes back: by our readers, and by PCL's.
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -6,46 +7,16 @@
 #include <pcl/io/ply_io.h>
 #include <pcl/point_types.h>
 
-#include "core/base/random.h"
 #include "core/io/cloud_writer.h"
 #include "core/io/scan_reader.h"
+#include "export_samples.h"
+#include "support/ptx_by_the_book.h"
 #include "support/temporary_folder.h"
 
 namespace tiltmap {
 namespace {
 
 using namespace test;
-
-// A sweep through a made-up room, some cells empty, with intensity and a pose that turns about every axis.
-ExportScan sweep(int index, bool regular = true) {
-  RandomStream random(static_cast<std::uint64_t>(index) + 40);
-  RangeImageData data;
-  data.rows = 41;
-  data.columns = 91;
-  ExportScan scan;
-  scan.geometry.rows = 41;
-  scan.geometry.columns = 91;
-  scan.geometry.azimuth_step_rad = 2.0 * kDegree;
-  scan.geometry.tilt_step_rad = 1.5 * kDegree;
-  for (int row = 0; row < data.rows; ++row) {
-    data.line_tilt_rad.push_back(scan.geometry.tiltOfRow(row));
-    for (int column = 0; column < data.columns; ++column) {
-      const bool empty = random.uniform() < 0.1;
-      data.code.push_back(empty ? cell_code::kNoReturn : cell_code::kMeasured);
-      data.range_m.push_back(empty ? 0.0F : static_cast<float>(random.uniform(1.0, 40.0)));
-      data.intensity.push_back(static_cast<float>(random.uniform()));
-      if (!regular)
-        data.direction.push_back(
-            Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized().cast<float>());
-    }
-  }
-  scan.index = index;
-  scan.image = *RangeImage::make(std::move(data));
-  Vector6d d;
-  d << 0.1, -0.2, 0.7, 12.25 + index, -7.5, 0.5;
-  scan.world_from_scan = Pose().moved(d);
-  return scan;
-}
 
 void expectSameMatrix(const Scan& read, const ExportScan& written, double tolerance_m) {
   const RangeImage &a = *read.image, &b = *written.image;
@@ -108,6 +79,50 @@ TEST(RoundTripPtx, SeveralScansSurvive) {
   for (std::size_t i = 0; i < 3; ++i) expectSameMatrix(result->scans[i].scan, scans[i], 2e-5);
 }
 
+// Read by nothing of ours.
+TEST(PtxByTheBook, SeveralScansHaveTheirMatrixPoseIntensityAndColour) {
+  const TemporaryFolder folder;
+  const std::vector<ExportScan> scans{sweep(0), sweep(1, false)};
+  WriteOptions options;
+  options.colour = CloudColour::Scan;
+  ASSERT_TRUE(writeCloud(folder / "all.ptx", cloudForExport(scans), options));
+  const auto blocks = ptxByTheBook(folder / "all.ptx");
+  ASSERT_EQ(blocks.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const PtxBlock& block = blocks[i];
+    const ExportScan& scan = scans[i];
+    ASSERT_EQ(block.columns, 91);
+    ASSERT_EQ(block.rows, 41);
+    const Eigen::Matrix3d r = scan.world_from_scan.rotation();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      EXPECT_NEAR(block.place[k], scan.world_from_scan.translation()[axis], 1e-12);
+      EXPECT_NEAR(block.matrix[3][k], block.place[k], 1e-12);
+      for (std::size_t j = 0; j < 3; ++j) {
+        EXPECT_NEAR(block.axes[k][j], r(static_cast<Eigen::Index>(j), axis), 1e-12);
+        EXPECT_EQ(block.axes[k][j], block.matrix[k][j]);
+      }
+      EXPECT_EQ(block.matrix[k][3], 0.0);
+    }
+    EXPECT_EQ(block.matrix[3][3], 1.0);
+    for (int row = 0; row < 41; ++row)
+      for (int column = 0; column < 91; ++column) {
+        const PtxCell& cell = block.cell(row, column);
+        ASSERT_EQ(cell.colour.size(), 3U);
+        if (!scan.image->hasPoint(row, column)) {
+          ASSERT_EQ(cell.local, (std::array<double, 3>{}));
+          continue;
+        }
+        const Eigen::Vector3d expected =
+            scan.world_from_scan * cellPoint(*scan.image, scan.geometry, row, column);
+        const auto world = block.world(cell);
+        ASSERT_LT((Eigen::Vector3d(world[0], world[1], world[2]) - expected).norm(), 2e-6);
+        ASSERT_NEAR(cell.intensity, scan.image->intensity(static_cast<std::size_t>(row * 91 + column)), 1e-6);
+      }
+  }
+  EXPECT_NE(blocks[0].cell(5, 5).colour, blocks[1].cell(5, 5).colour);
+}
+
 // Written once more, a file that was read is the same byte for byte: nothing drifts.
 TEST(RoundTripPtx, AndAgain) {
   const TemporaryFolder folder;
@@ -121,15 +136,6 @@ TEST(RoundTripPtx, AndAgain) {
   ASSERT_TRUE(twice);
   ExportScan first = sweep(0, false);
   expectSameMatrix(twice->scans[0].scan, first, 1e-5);
-}
-
-// Points in the world frame, in the order of the scans.
-std::vector<Eigen::Vector3d> worldPoints(const std::vector<ExportScan>& scans) {
-  std::vector<Eigen::Vector3d> points;
-  for (const ExportScan& scan : scans)
-    for (const Eigen::Vector3d& p : cloudOf(*scan.image, scan.geometry).points)
-      points.push_back(scan.world_from_scan * p);
-  return points;
 }
 
 class Merged : public testing::TestWithParam<std::tuple<const char*, bool>> {};
@@ -236,6 +242,40 @@ TEST(PclReadsBack, OrganisedPcdWithItsPose) {
           (p.getVector3fMap().cast<double>() - cellPoint(*scan.image, scan.geometry, row, column)).norm(),
           1e-5);
     }
+}
+
+TEST(PclReadsBack, MatricesKeptWithColours) {
+  const TemporaryFolder folder;
+  const ExportScan scan = sweep(2);
+  WriteOptions options;
+  options.colour = CloudColour::Height;
+  for (const std::string name : {"scan.pcd", "scan.ply"}) {
+    ASSERT_TRUE(writeCloud(folder / name, cloudForExport({scan}), options));
+    pcl::PointCloud<pcl::PointXYZRGB> cloud;
+    ASSERT_EQ(name == "scan.pcd" ? pcl::io::loadPCDFile((folder / name).string(), cloud)
+                                 : pcl::io::loadPLYFile((folder / name).string(), cloud),
+              0);
+    ASSERT_EQ(cloud.height, 41U) << name;
+    ASSERT_EQ(cloud.width, 91U) << name;
+    // The lowest is blue, the highest red, by height in the world.
+    double lowest = 1e9, highest = -1e9;
+    pcl::PointXYZRGB low, high;
+    for (int row = 0; row < 41; ++row)
+      for (int column = 0; column < 91; ++column) {
+        if (!scan.image->hasPoint(row, column)) continue;
+        const double z = (scan.world_from_scan * cellPoint(*scan.image, scan.geometry, row, column)).z();
+        if (z < lowest) lowest = z, low = cloud.at(column, row);
+        if (z > highest) highest = z, high = cloud.at(column, row);
+      }
+    EXPECT_GT(low.b, 200) << name;
+    EXPECT_LT(low.r, 50) << name;
+    EXPECT_GT(high.r, 200) << name;
+    EXPECT_LT(high.b, 50) << name;
+    // And ours keeps matrix, pose and intensity beside them.
+    const auto read = readScans(folder / name, {});
+    ASSERT_TRUE(read) << read.error().what;
+    expectSameMatrix(read->scans[0].scan, scan, 2e-5);
+  }
 }
 
 TEST(PclReadsBack, PlyOfOneScanWithItsMatrix) {

@@ -477,6 +477,59 @@ TEST_F(EditTest, MergeBringsEverythingAndIsUndone) {
   EXPECT_EQ(state(), before);
 }
 
+// A point of the other world keeps its place on the site, whoever tells where that is.
+TEST_F(EditTest, MergeKnowsWhereTheOtherStandsIfBothTellTheirSite) {
+  const auto other = must(Project::create(folder_ / "other.tiltmap"));
+  const auto empty = must(Project::create(folder_ / "empty.tiltmap"));
+  must(other->apply(importEdit({sampleScan(21)})));
+  EXPECT_FALSE(mergePlacement(*project_->snapshot(), *other->snapshot()));
+  const Pose ours = Pose::planar(500, 20, 0.3), theirs = Pose::planar(510, 25, -0.9);
+  SurveyInfo survey;
+  survey.site_from_world = theirs;
+  must(other->apply(surveyEdit(survey)));
+  EXPECT_FALSE(mergePlacement(*project_->snapshot(), *other->snapshot()));
+  EXPECT_TRUE(mergePlacement(*empty->snapshot(), *other->snapshot()));
+
+  // Placed by a person, the other tells this project its site.
+  const Pose shift = Pose::planar(3, 4, 0.5);
+  must(project_->apply(mergeEdit(*project_->snapshot(), *other->snapshot(), shift)));
+  const auto merged = project_->snapshot();
+  ASSERT_TRUE(merged->survey().site_from_world);
+  const Pose site_from_scan = theirs * other->snapshot()->scans()[0].odometry();
+  const auto away =
+      difference(*merged->survey().site_from_world * merged->scans().back().odometry(), site_from_scan);
+  EXPECT_LT(away.translation_m, 1e-9);
+  EXPECT_LT(away.rotation_rad, 1e-7);
+  must(project_->undo());
+
+  survey.site_from_world = ours;
+  must(project_->apply(surveyEdit(survey)));
+  const auto placement = mergePlacement(*project_->snapshot(), *other->snapshot());
+  ASSERT_TRUE(placement);
+  EXPECT_LT(difference(ours * *placement, theirs).translation_m, 1e-9);
+}
+
+TEST_F(EditTest, AnAcceptedLinkIsAPersonsOwn) {
+  must(project_->apply(sampleRegister(project_->snapshot())));
+  const Link found = project_->snapshot()->links()[0];
+  const std::size_t count = project_->snapshot()->links().size();
+  const std::string before = state();
+  must(project_->apply(acceptLinkEdit(found)));
+  ASSERT_EQ(project_->snapshot()->links().size(), count);
+  const Link accepted = project_->snapshot()->links().back();
+  EXPECT_EQ(accepted.origin, LinkOrigin::ByHand);
+  EXPECT_EQ(accepted.fixed, found.fixed);
+  EXPECT_EQ(text(accepted.fixed_from_moving), text(found.fixed_from_moving));
+  must(project_->apply(sampleRegister(project_->snapshot(), 9)));
+  EXPECT_TRUE(project_->snapshot()->findLink(accepted.id)) << "registering again leaves it alone";
+  must(project_->undo());
+  must(project_->undo());
+  EXPECT_EQ(state(), before);
+  Link failed = found;
+  failed.succeeded = false;
+  EXPECT_THROW(acceptLinkEdit(failed), std::invalid_argument);
+}
+
 TEST_F(EditTest, CaptureStoresLineByLine) {
   Scan start = sampleScan(50);
   start.image = nullptr;
