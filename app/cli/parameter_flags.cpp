@@ -12,9 +12,22 @@ std::string parameterSummary(const ParameterInfo& info) {
   } else if (info.minimum && info.maximum) {
     text = parameterText(*info.minimum) + " to " + parameterText(*info.maximum);
     if (!info.unit.empty()) text += " " + info.unit;
+  } else {
+    text = "text";
   }
-  return text + ", default " + parameterText(info.default_value);
+  const std::string standard = parameterText(info.default_value);
+  return text + ", default " + (standard.empty() ? "empty" : standard);
 }
+
+namespace {
+
+std::string typeName(const ParameterInfo& info) {
+  if (!info.unit.empty()) return info.unit;
+  if (info.kind == ParameterKind::Choice) return "WORD";
+  return info.minimum ? "NUMBER" : "TEXT";
+}
+
+}  // namespace
 
 std::shared_ptr<ParameterFlags> ParameterFlags::addTo(CLI::App& command,
                                                       const std::vector<ParameterInfo>& infos) {
@@ -27,9 +40,7 @@ std::shared_ptr<ParameterFlags> ParameterFlags::addTo(CLI::App& command,
     CLI::Option* option =
         info.kind == ParameterKind::Boolean
             ? command.add_flag("--" + info.name + "{true}", flags->texts_[i], help)
-            : command.add_option("--" + info.name, flags->texts_[i], help)
-                  ->type_name(info.unit.empty() ? (info.kind == ParameterKind::Choice ? "WORD" : "NUMBER")
-                                                : info.unit);
+            : command.add_option("--" + info.name, flags->texts_[i], help)->type_name(typeName(info));
     option->group("Parameters");
     flags->options_.push_back(option);
   }

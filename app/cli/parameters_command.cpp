@@ -1,5 +1,6 @@
 // tiltmap parameters [OPERATION]
 #include "app/cli/operation_runner.h"
+#include "core/base/text.h"
 
 namespace tiltmap::cli {
 
@@ -20,21 +21,16 @@ nlohmann::json infoJson(const ParameterInfo& info) {
 }
 
 std::string wrapped(const std::string& text, const std::string& indent, std::size_t width = 100) {
-  std::string result = indent;
-  std::size_t column = indent.size();
-  std::size_t start = 0;
-  while (start < text.size()) {
-    std::size_t end = text.find(' ', start);
-    if (end == std::string::npos) end = text.size();
-    if (column + (end - start) > width && column > indent.size()) {
-      result += "\n" + indent;
-      column = indent.size();
+  std::string result, line;
+  for (const std::string_view word : splitWords(text)) {
+    if (!line.empty() && indent.size() + line.size() + 1 + word.size() > width) {
+      result += indent + line + "\n";
+      line.clear();
     }
-    result += text.substr(start, end - start) + " ";
-    column += end - start + 1;
-    start = end + 1;
+    if (!line.empty()) line += ' ';
+    line += word;
   }
-  return result + "\n";
+  return result + indent + line + "\n";
 }
 
 std::string operationText(const Operation& operation) {

@@ -18,7 +18,7 @@ struct MatrixPlace {
 };
 
 // The scan frame: x right, y forward, z up, metres; the origin lies on the tilt axis, which is the x axis.
-// With no lever arm that is the mirror centre (METHOD, frames and units).
+// With no lever arm that is the mirror centre.
 //
 // Column j looks at azimuth a = azimuth_start + j * azimuth_step (0 = right, pi = left); row i is taken at
 // the tilt e of its line (nominally tilt_start + i * tilt_step, positive looks up). A beam of printed range r
