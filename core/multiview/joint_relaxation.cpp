@@ -41,6 +41,7 @@ constexpr int kLoopLinks = 4;          // as many links or more between its ends
 constexpr double kLinkError_m = 0.05;  // what each link between may have added to its error
 constexpr double kLinkError_rad = 0.3 * kDegree;
 constexpr double kTurnArm_m = 10.0;  // a turn counts as the shift it makes at this distance
+constexpr double kFurthest = 6.0;    // a step of the settling is lengthened by at most so much
 
 std::string namesOf(const std::vector<int>& scans) {
   std::string text;
@@ -267,18 +268,19 @@ class JointRelaxation : public RelaxationEngine {
     return list;
   }
 
-  // One Gauss-Newton step; false, with a warning, where the equations cannot be solved.
-  bool solve(const std::vector<PairTerm>& ties, RelaxationEvent& solved) {
+  // One Gauss-Newton step, `lengthened` or not; false, with a warning, where the equations cannot be solved.
+  bool solve(const std::vector<PairTerm>& ties, RelaxationEvent& solved, bool lengthened = false) {
     tied_ = tiedToHeld(poses_.size(), pinned_, ties);
     std::vector<char> held = pinned_;
     for (std::size_t i = 0; i < held.size(); ++i)
       if (!tied_[i]) held[i] = 1;
-    const Result<std::vector<Vector6d>> motions = solvePoses(poses_.size(), held, ties, kDamping);
+    Result<std::vector<Vector6d>> motions = solvePoses(poses_.size(), held, ties, kDamping);
     if (!motions) {
       warnings_.push_back(motions.error().what + "; the poses are those of the step before");
       return false;
     }
     solved.kind = RelaxationEventKind::Solved;
+    if (lengthened) lengthen(*motions);
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       if (held[i]) continue;
       const Pose moved = poses_[i] * Pose().moved((*motions)[i]);
@@ -291,9 +293,31 @@ class JointRelaxation : public RelaxationEngine {
     return true;
   }
 
+  // With a loss, and pairs of elements chosen anew, a step falls short by about the same share each time, and
+  // where a long drive sways that share is nearly all. How the last two steps differ tells it (Irons and Tuck
+  // 1969, Aitken's extrapolation for vectors).
+  void lengthen(std::vector<Vector6d>& motions) {
+    const auto product = [](const Vector6d& a, const Vector6d& b) {
+      return kTurnArm_m * kTurnArm_m * a.head<3>().dot(b.head<3>()) + a.tail<3>().dot(b.tail<3>());
+    };
+    if (last_motions_.size() == motions.size()) {
+      double along = 0.0, square = 0.0;
+      for (std::size_t i = 0; i < motions.size(); ++i) {
+        const Vector6d change = motions[i] - last_motions_[i];
+        along += product(last_motions_[i], change);
+        square += product(change, change);
+      }
+      length_ = square > 0.0 ? std::clamp(-length_ * along / square, 1.0, kFurthest) : 1.0;
+    } else {
+      length_ = 1.0;
+    }
+    last_motions_ = motions;
+    for (Vector6d& motion : motions) motion *= length_;
+  }
+
   void settle(RelaxationStep& report, bool settling) {
     RelaxationEvent solved;
-    if (!solve(terms(), solved)) return end(report);
+    if (!solve(terms(), solved, true)) return end(report);
     report.events.push_back(solved);
     ++iterations_;
     updateScale(solved.translation_m);
@@ -330,6 +354,7 @@ class JointRelaxation : public RelaxationEngine {
     if (moved_m > kNarrowBelow_m && ++waited_ <= kWaitAtMost) return;
     if (r.loss != Loss::Annealed || own_scale_steps_left_ == 0) return;
     --own_scale_steps_left_;
+    last_motions_.clear();  // another problem
     if (metricOf(r.motion, r.reduction == Reduction::Patches) == Metric::PatchToPatch) {
       loss_ = LossScale::ofOwnDeviation(r.loss_deviations, std::min(ownExcess(links_), widest_m_));
       return;
@@ -411,6 +436,8 @@ class JointRelaxation : public RelaxationEngine {
   LossScale loss_;
   double widest_m_ = 0.0;  // of the loss scales of this data
   double last_rms_m_ = 0.0;
+  std::vector<Vector6d> last_motions_;  // as solved, before they were lengthened
+  double length_ = 1.0;                 // of the last step
   int own_scale_steps_left_ = 0;
   int iterations_ = 0;
 };
