@@ -124,44 +124,56 @@ Row timeRow(const std::string& subject, const std::string& name, const Ended& en
   return row;
 }
 
+// A simulated survey from its matrices to relaxed poses: the time of each step, the error of each stage.
+struct Chain {
+  std::string subject;
+  Arguments simulate;
+};
+
+void addChain(const Chain& chain, Table& table, const fs::path& program, const fs::path& scratch, int rounds,
+              const std::function<void(const std::string&)>& tell) {
+  tell(chain.subject);
+  const fs::path original = scratch / "original.tiltmap";
+  const fs::path registered = scratch / "registered.tiltmap";
+  const fs::path work = scratch / "work.tiltmap";
+  fs::remove(original);
+  const Ended made = run(program, {"new", original.string()}, scratch);
+  Arguments simulate{"simulate", original.string(), "--quiet"};
+  simulate.insert(simulate.end(), chain.simulate.begin(), chain.simulate.end());
+  const Ended simulated = run(program, simulate, scratch);
+  if (made.exit_code != 0 || simulated.exit_code != 0 || !fs::exists(original)) {
+    table.notes.push_back("Skipped: " + program.string() + " made no project of " + chain.subject + ".");
+    return;
+  }
+  table.rows.push_back(timeRow(chain.subject, "tiltmap simulate", simulated));
+  table.rows.push_back(stageRow(chain.subject, program, original, "odometry", scratch));
+  const auto addStage = [&](const std::string& command, const fs::path& from, const std::string& stage) {
+    const Ended ended = quietest(program, {command, work.string(), "--quiet"}, from, work, scratch, rounds);
+    table.rows.push_back(timeRow(chain.subject, "tiltmap " + command, ended));
+    if (ended.exit_code == 0) table.rows.push_back(stageRow(chain.subject, program, work, stage, scratch));
+    return ended.exit_code == 0;
+  };
+  if (!addStage("register", original, "pairwise")) return;
+  fs::copy_file(work, registered, fs::copy_options::overwrite_existing);
+  addStage("relax", registered, "relaxed");
+}
+
 }  // namespace
 
 void addProgramRows(Table& table, const fs::path& program, const fs::path& scratch, int rounds,
                     const std::function<void(const std::string&)>& tell) {
-  const std::string subject = "tiltmap as a process: a project of exp2fixed, 14 stops, seed 1";
   fs::remove_all(scratch);
   fs::create_directories(scratch);
-  for (const char* command : {"new", "simulate", "register"}) {
+  for (const char* command : {"new", "simulate", "register", "relax"}) {
     if (hasCommand(program, command, scratch)) continue;
-    table.notes.push_back("Skipped: " + program.string() + " has no command " + command + " yet.");
+    table.notes.push_back("Skipped: " + program.string() + " has no command " + command + ".");
     return;
   }
-  tell("tiltmap simulate and register");
-  const fs::path original = scratch / "original.tiltmap";
-  const fs::path work = scratch / "work.tiltmap";
-  const Ended made = run(program, {"new", original.string()}, scratch);
-  const Ended simulated =
-      run(program, {"simulate", original.string(), "--experiment", "exp2fixed", "--quiet"}, scratch);
-  if (made.exit_code != 0 || simulated.exit_code != 0 || !fs::exists(original)) {
-    table.notes.push_back("Skipped: " + program.string() + " made no simulated project.");
-    return;
-  }
-  table.rows.push_back(timeRow(subject, "tiltmap simulate", simulated));
-  table.rows.push_back(stageRow(subject, program, original, "odometry", scratch));
-  const auto addStage = [&](const std::string& command, const fs::path& from, const std::string& stage) {
-    const Ended ended = quietest(program, {command, work.string(), "--quiet"}, from, work, scratch, rounds);
-    table.rows.push_back(timeRow(subject, "tiltmap " + command, ended));
-    if (ended.exit_code == 0) table.rows.push_back(stageRow(subject, program, work, stage, scratch));
-    return ended.exit_code == 0;
-  };
-  if (!addStage("register", original, "pairwise")) return;
-  if (!hasCommand(program, "relax", scratch)) {
-    table.notes.push_back("Skipped: tiltmap has no command relax yet.");
-    return;
-  }
-  const fs::path registered = scratch / "registered.tiltmap";
-  fs::copy_file(work, registered, fs::copy_options::overwrite_existing);
-  addStage("relax", registered, "relaxed");
+  const std::vector<Chain> chains = {
+      {"tiltmap as a process: exp2fixed, 14 stops, seed 1", {"--experiment", "exp2fixed"}},
+      {"tiltmap as a process: loop, 40 stops round a block, seed 1", {"--experiment", "loop"}},
+      {"tiltmap as a process: survey, 100 stops, seed 1", {"--experiment", "survey", "--stops", "100"}}};
+  for (const Chain& chain : chains) addChain(chain, table, program, scratch, rounds, tell);
 }
 
 }  // namespace tiltmap::benchmarks

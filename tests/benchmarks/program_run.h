@@ -9,9 +9,10 @@
 
 namespace tiltmap::benchmarks {
 
-// Makes a project in a folder of its own below `scratch`, simulates exp2fixed into it, and times `tiltmap
-// register` (and `tiltmap relax`, where the program has it) on a fresh copy each round, with the error of
-// each stage as `tiltmap evaluate` tells it. A note instead of rows where the program lacks a command.
+// Simulates exp2fixed, the loop and a survey of 100 stops, each into a project below `scratch` (which is
+// emptied first), and times `tiltmap register` and `tiltmap relax` on a fresh copy each round, with the error
+// of each stage (odometry, pairwise, relaxed) as `tiltmap evaluate` tells it. A note instead of rows where
+// the program lacks a command.
 void addProgramRows(Table& table, const std::filesystem::path& program, const std::filesystem::path& scratch,
                     int rounds, const std::function<void(const std::string&)>& tell);
 
