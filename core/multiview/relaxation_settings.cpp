@@ -40,12 +40,13 @@ void addActiveSet(Table& t) {
 RegistrationSettings jointRegistrationSettings() {
   RegistrationSettings s;
   s.patch_drop_edges = true;
+  s.patch_spot_rad = 0.16 * kDegree;
   s.loss_start_m = 0.5;
   s.loss_factor = 0.5;
   s.min_translation_m = 1e-4;
   s.min_rotation_rad = 1e-5;
   s.min_overlap = 0.2;
-  s.min_agreement = 0.4;
+  s.min_agreement = 0.3;
   return s;
 }
 

@@ -14,8 +14,8 @@ enum class RelaxationMethod {
 };
 
 // The registration's values that serve many scans at once. Starts are good already, so the loss begins
-// narrower. Cells on depth edges are left out: mixed pixels pull every pair a little the same way, which adds
-// up along a drive.
+// narrower. What is a little wrong the same way in every pair adds up along a drive: cells on depth edges
+// (mixed pixels) are left out, and the spot on slanted ground is reckoned with.
 RegistrationSettings jointRegistrationSettings();
 
 // Plain data, SI units. Describe and set it through relaxationParameters().

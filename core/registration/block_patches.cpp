@@ -51,8 +51,11 @@ class Pyramid {
     if (!planar &&
         !fitsPlane(mean, values, axes.col(0), settings_.patch_rough_noise_m, settings_.patch_rough_floor_m))
       return;
+    const auto short_m = shortRange(mean, axes.col(0), settings_.patch_spot_rad);
+    if (!short_m) return;
     const auto patch = static_cast<std::uint32_t>(out_.elements.size());
-    if (!appendPatch(mean, values, axes, m.n, out_.elements)) return;
+    const Eigen::Vector3d place = mean + *short_m * mean.normalized();
+    if (!appendPatch(place, values, axes, m.n, out_.elements)) return;
     const int first_row = row << level, first_column = column << level;
     const MomentGrid& tiles = levels_.front();
     const int last_row = std::min(tiles.rows, (row + 1) << level);

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kResidualFloor_m = 0.002;  // no surface measured by us is known better, ours
 constexpr double kOffsetFloor_m = 0.001;
+constexpr double kLongestSpot_m = 2.0;  // from 2 s to 2 s; an LMS' pulse is some 2.5 m long
 
 }  // namespace
 
@@ -18,6 +19,19 @@ bool fitsPlane(const Eigen::Vector3d& mean, const Eigen::Vector3d& values, const
   const double cos_incidence = range > 0.0 ? std::abs(normal.dot(mean)) / range : 1.0;
   const double noise = noise_m * cos_incidence;
   return values[0] < 2.0 * (noise * noise + floor_m * floor_m);
+}
+
+// Across a spot of deviation s the range varies as r (1 +- s tan incidence), and the light that returns by
+// its inverse square, so the mean falls short by r (s tan incidence)^2.
+std::optional<double> shortRange(const Eigen::Vector3d& mean, const Eigen::Vector3d& normal,
+                                 double spot_rad) {
+  const double range = mean.norm();
+  if (spot_rad <= 0.0 || range <= 0.0) return 0.0;
+  const double cos_incidence = std::min(std::abs(normal.dot(mean)) / range, 1.0);
+  const double spread =
+      spot_rad * std::sqrt(1.0 - cos_incidence * cos_incidence) / std::max(cos_incidence, 1e-6);
+  if (4.0 * spread * range > kLongestSpot_m) return std::nullopt;
+  return range * spread * spread;
 }
 
 bool appendPatch(const Eigen::Vector3d& mean, const Eigen::Vector3d& values, const Eigen::Matrix3d& axes,

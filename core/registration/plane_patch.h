@@ -1,6 +1,8 @@
 // When a group of points counts as a plane, and what is known of it then: shared by all patch builders.
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 #include "core/registration/surface_elements.h"
@@ -11,6 +13,11 @@ namespace tiltmap {
 // when the residual is below sqrt(2) sqrt((noise cos incidence)^2 + floor^2); metres, scan frame.
 bool fitsPlane(const Eigen::Vector3d& mean, const Eigen::Vector3d& values, const Eigen::Vector3d& normal,
                double noise_m, double floor_m);
+
+// How much too short the ranges of a slanted surface are to a scanner whose light has the deviation spot_rad
+// across the beam, metres; nothing where the spot is drawn out longer than a pulse, so that it cannot be
+// told.
+std::optional<double> shortRange(const Eigen::Vector3d& mean, const Eigen::Vector3d& normal, double spot_rad);
 
 // Appends the patch of `count` points, its normal towards the scanner, its variances from its own residual.
 // False, and nothing appended, where the points lie along a line and span no plane.

@@ -70,6 +70,7 @@ struct RegistrationSettings : RejectionSettings {
   double patch_floor_m = 0.002;
   double patch_rough_noise_m = 0.03;
   double patch_rough_floor_m = 0.02;
+  double patch_spot_rad = 0.0;  // blocks: deviation of the light across the beam; 0: a thin beam
 
   // Sampling.
   Sampling sampling = Sampling::All;

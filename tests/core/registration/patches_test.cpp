@@ -61,6 +61,37 @@ void expectOnTheRoom(const SurfaceElements& patches, std::size_t valid_cells) {
   EXPECT_GT(static_cast<double>(cells), 0.8 * static_cast<double>(valid_cells));
 }
 
+TEST(Patches, FarGroundIsSetBackByTheSpotOrLeftOut) {
+  const double spot_rad = 0.16 * kDegree;
+  // What a wide spot makes of the ground one metre below: ranges short by (s tan incidence)^2 of themselves.
+  const ScannerGeometry geometry;
+  const RangeImagePtr image = testing_support::imageOfScene(geometry, [&](const V& direction) {
+    const double cos_incidence = -direction.z();
+    if (cos_incidence < 0.03) return 100.0;
+    return (1.0 - spot_rad * spot_rad * (1.0 / (cos_incidence * cos_incidence) - 1.0)) / cos_incidence;
+  });
+  RegistrationSettings s;
+  const auto highest = [&](double& furthest_m) {
+    double height_m = -1.0;
+    furthest_m = 0.0;
+    const SurfaceElements patches = blockPatches(*image, geometry, s).elements;
+    EXPECT_GT(patches.size(), 20U);
+    for (const V& p : patches.position) {
+      height_m = std::max(height_m, p.z());
+      furthest_m = std::max(furthest_m, p.norm());
+    }
+    return height_m + 1.0;
+  };
+  double furthest_m = 0.0;
+  EXPECT_GT(highest(furthest_m), 2e-3);
+  EXPECT_GT(furthest_m, 16.0);
+  s.patch_spot_rad = spot_rad;
+  EXPECT_LT(highest(furthest_m), 5e-4);
+  // Drawn out to two metres at 13.4 m.
+  EXPECT_GT(furthest_m, 10.0);
+  EXPECT_LT(furthest_m, 14.0);
+}
+
 TEST(CubePatches, LieOnTheSurfacesOfTheRoom) {
   const Scan scan = room(0.005);
   expectOnTheRoom(cubePatches(*scan.image, cellPoints(*scan.image, scan.geometry), {}),
