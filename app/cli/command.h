@@ -63,5 +63,9 @@ void addEdits(CLI::App& app, Chosen& chosen);    // rename, note, survey, delete
 void addPhoto(CLI::App& app, Chosen& chosen);
 void addLink(CLI::App& app, Chosen& chosen);
 void addFiles(CLI::App& app, Chosen& chosen);  // copy, merge, compact, verify
+void addGui(CLI::App& app, Chosen& chosen);
+
+// The window, on a project where one is named; fails where there is no display.
+int openWindow(Context& context, const std::string& project);
 
 }  // namespace tiltmap::cli

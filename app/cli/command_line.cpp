@@ -6,6 +6,7 @@
 
 #include "app/cli/command.h"
 #include "core/base/text.h"
+#include "ui/window/gui_application.h"
 
 namespace tiltmap::cli {
 
@@ -88,7 +89,7 @@ int run(int argc, char** argv) {
   Chosen chosen;
   for (const auto add :
        {addNew, addSimulate, addImport, addInfo, addRegister, addRelax, addPoses, addEvaluate, addExport,
-        addParameters, addHistory, addEdits, addPhoto, addLink, addFiles, addDemo})
+        addParameters, addHistory, addEdits, addPhoto, addLink, addFiles, addDemo, addGui})
     add(app, chosen);
 
   try {
@@ -99,6 +100,9 @@ int run(int argc, char** argv) {
     Console console(flags);
     return parseError(app, error, console, {argv + 1, argv + argc});
   }
+  // Without words: the window where there is a display, else what words there are.
+  if (!chosen.body && ui::displayThere())
+    chosen.body = [](Context& context) { return openWindow(context, {}); };
   if (!chosen.body) {
     std::cout << app.help();
     return kDone;

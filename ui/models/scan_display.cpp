@@ -1,0 +1,61 @@
+#include "ui/models/scan_display.h"
+
+#include <algorithm>
+
+#include "core/products/scan_colours.h"
+#include "ui/models/project_session.h"
+
+namespace tiltmap::ui {
+
+ScanDisplay::ScanDisplay(const ProjectSession& session, QObject* parent)
+    : QObject(parent), session_(session) {
+  connect(&session, &ProjectSession::closed, this, [this] {
+    hidden_.clear();
+    chosen_.reset();
+  });
+}
+
+void ScanDisplay::setVisible(const std::vector<ScanId>& scans, bool visible) {
+  bool any = false;
+  for (const ScanId scan : scans) any |= visible ? hidden_.erase(scan) > 0 : hidden_.insert(scan).second;
+  if (any) Q_EMIT visibilityChanged();
+}
+
+void ScanDisplay::showAll() {
+  if (hidden_.empty()) return;
+  hidden_.clear();
+  Q_EMIT visibilityChanged();
+}
+
+void ScanDisplay::showOnly(const std::vector<ScanId>& scans) {
+  const SnapshotPtr snapshot = session_.snapshot();
+  if (!snapshot) return;
+  std::set<ScanId> hidden;
+  for (const ScanEntry& scan : snapshot->scans())
+    if (std::ranges::find(scans, scan.id) == scans.end()) hidden.insert(scan.id);
+  if (hidden == hidden_) return;
+  hidden_ = std::move(hidden);
+  Q_EMIT visibilityChanged();
+}
+
+QColor ScanDisplay::colour(ScanId scan) const {
+  const SnapshotPtr snapshot = session_.snapshot();
+  const auto index = snapshot ? snapshot->indexOf(scan) : std::nullopt;
+  if (!index) return Qt::gray;
+  const Rgb rgb = scanColour(*index);
+  return {rgb.r, rgb.g, rgb.b};
+}
+
+Stage ScanDisplay::stage() const {
+  const SnapshotPtr snapshot = session_.snapshot();
+  if (!snapshot) return Stage::Odometry;
+  return chosen_ && snapshot->hasStage(*chosen_) ? *chosen_ : snapshot->latestStage();
+}
+
+void ScanDisplay::setStage(std::optional<Stage> stage) {
+  if (stage == chosen_) return;
+  chosen_ = stage;
+  Q_EMIT stageChanged();
+}
+
+}  // namespace tiltmap::ui

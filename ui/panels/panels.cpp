@@ -1,0 +1,35 @@
+// The list of the window's panels. A new one is declared in a file of its own and added here; its places are
+// in ui/window/perspectives.cpp.
+#include "ui/panels/details_panel.h"
+#include "ui/panels/history_panel.h"
+#include "ui/panels/localisation_panel.h"
+#include "ui/panels/log_panel.h"
+#include "ui/panels/panel.h"
+#include "ui/panels/project_tree_panel.h"
+
+namespace tiltmap::ui {
+
+namespace {
+
+template <class Panel>
+QWidget* make(const PanelContext& context) {
+  return new Panel(context);
+}
+
+}  // namespace
+
+const std::vector<PanelInfo>& panels() {
+  static const std::vector<PanelInfo> list = {
+      {"project-tree", "Project", "view-list-tree", "Scans, links and results of the project",
+       make<ProjectTreePanel>},
+      {"details", "Details", "documentinfo", "What is known about the selected scan or link",
+       make<DetailsPanel>},
+      {"localisation", "Localisation", "table", "Where the stops are, by stage", make<LocalisationPanel>},
+      {"history", "History", "view-history", "Every edit of the project, and a way back to it",
+       make<HistoryPanel>},
+      {"log", "Log", "text-x-log", "What the program did, line by line", make<LogPanel>},
+  };
+  return list;
+}
+
+}  // namespace tiltmap::ui

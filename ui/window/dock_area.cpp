@@ -1,0 +1,200 @@
+#include "ui/window/dock_area.h"
+
+#include <DockAreaWidget.h>
+#include <DockManager.h>
+#include <DockWidget.h>
+#include <IconProvider.h>
+#include <QSplitter>
+#include <QVBoxLayout>
+
+#include "ui/look/icons.h"
+#include "ui/look/theme.h"
+#include "ui/models/workspace.h"
+
+namespace tiltmap::ui {
+
+namespace {
+
+// Of the saved layouts: raised when a stored arrangement would no longer make sense.
+constexpr int kLayoutVersion = 1;
+
+ads::CDockManager* makeManager(QWidget* parent) {
+  using Manager = ads::CDockManager;
+  Manager::setConfigFlags(Manager::DefaultOpaqueConfig);
+  Manager::setConfigFlag(Manager::ActiveTabHasCloseButton, true);
+  Manager::setConfigFlag(Manager::DockAreaHasUndockButton, false);
+  Manager::setConfigFlag(Manager::DockAreaDynamicTabsMenuButtonVisibility, true);
+  Manager::setConfigFlag(Manager::DockAreaHasCloseButton, false);
+  Manager::setConfigFlag(Manager::OpaqueUndocking, false);
+  Manager::setConfigFlag(Manager::MiddleMouseButtonClosesTab, true);
+  Manager::setConfigFlag(Manager::FloatingContainerHasWidgetIcon, true);
+  Manager::iconProvider().registerCustomIcon(ads::TabCloseIcon, icon("window-close"));
+  Manager::iconProvider().registerCustomIcon(ads::DockAreaMenuIcon, icon("arrow-down"));
+  return new Manager(parent);
+}
+
+ads::DockWidgetArea areaOf(DockSide side) {
+  switch (side) {
+    case DockSide::Left:
+      return ads::LeftDockWidgetArea;
+    case DockSide::Right:
+      return ads::RightDockWidgetArea;
+    case DockSide::Top:
+      return ads::TopDockWidgetArea;
+    case DockSide::Bottom:
+      return ads::BottomDockWidgetArea;
+    case DockSide::Tab:
+      return ads::CenterDockWidgetArea;
+  }
+  return ads::CenterDockWidgetArea;
+}
+
+// Of two neighbours in a splitter: the new one gets `share` of what both have.
+void divide(const ads::CDockAreaWidget* added, const ads::CDockAreaWidget* old, double share) {
+  auto* splitter = qobject_cast<QSplitter*>(added->parentWidget());
+  if (!splitter || share <= 0.0) return;
+  const int a = splitter->indexOf(const_cast<ads::CDockAreaWidget*>(added));
+  int b = -1;
+  for (int i = 0; i < splitter->count(); ++i)
+    if (splitter->widget(i) == old || splitter->widget(i)->isAncestorOf(old)) b = i;
+  if (a < 0 || b < 0 || a == b) return;
+  QList<int> sizes = splitter->sizes();
+  const int both = sizes[a] + sizes[b];
+  const int whole = both > 0 ? both : 1000;
+  sizes[a] = static_cast<int>(whole * share);
+  sizes[b] = whole - sizes[a];
+  splitter->setSizes(sizes);
+}
+
+}  // namespace
+
+DockArea::DockArea(const PanelContext& context, QWidget* parent)
+    : QWidget(parent), context_(context), manager_(makeManager(this)) {
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(manager_);
+  makeDocks(context);
+  restyle();
+  connect(&context.theme, &Theme::changed, this, &DockArea::restyle);
+}
+
+DockArea::~DockArea() = default;
+
+void DockArea::makeDocks(const PanelContext& context) {
+  for (const PanelInfo& info : panels()) {
+    auto* dock = new ads::CDockWidget(info.title, manager_);
+    dock->setObjectName(info.id);
+    dock->setIcon(icon(info.icon));
+    dock->setToolTip(info.help);
+    dock->setFeature(ads::CDockWidget::DockWidgetDeleteOnClose, false);
+    dock->setMinimumSizeHintMode(ads::CDockWidget::MinimumSizeHintFromContent);
+    QWidget* content = info.make(context);
+    content->setObjectName("panel:" + info.id);
+    content->setAccessibleName(info.title);
+    content->setAccessibleDescription(info.help);
+    dock->setWidget(content, ads::CDockWidget::ForceNoScrollArea);
+    docks_[info.id] = dock;
+    connect(dock, &ads::CDockWidget::viewToggled, this, &DockArea::panelsChanged);
+  }
+}
+
+QString DockArea::layoutKey(Perspective perspective) const {
+  return "layout/" + perspectiveName(perspective).toLower();
+}
+
+void DockArea::saveLayout() const {
+  context_.workspace.preferences().setBytes(layoutKey(perspective_), manager_->saveState(kLayoutVersion));
+}
+
+void DockArea::setPerspective(Perspective perspective) {
+  if (perspective == perspective_ && !manager_->openedDockWidgets().isEmpty()) return;
+  if (!manager_->openedDockWidgets().isEmpty()) saveLayout();
+  perspective_ = perspective;
+  const QByteArray saved = context_.workspace.preferences().bytes(layoutKey(perspective));
+  if (saved.isEmpty() || !manager_->restoreState(saved, kLayoutVersion)) arrange(perspective);
+  Q_EMIT perspectiveChanged();
+  Q_EMIT panelsChanged();
+}
+
+void DockArea::resetLayout() {
+  arrange(perspective_);
+  saveLayout();
+  Q_EMIT panelsChanged();
+}
+
+void DockArea::arrange(Perspective perspective) {
+  for (const auto& [id, dock] : docks_)
+    if (dock->dockContainer()) manager_->removeDockWidget(dock);
+  std::map<QString, ads::CDockAreaWidget*> placed;
+  QString first;
+  for (const DockPlace& place : delivered(perspective)) {
+    const auto found = docks_.find(place.panel);
+    if (found == docks_.end()) continue;
+    const auto beside = placed.find(placed.contains(place.beside) ? place.beside : first);
+    ads::CDockAreaWidget* old = beside == placed.end() ? nullptr : beside->second;
+    const DockSide side = old || place.side != DockSide::Tab ? place.side : DockSide::Left;
+    placed[place.panel] = manager_->addDockWidget(areaOf(side), found->second, old);
+    found->second->toggleView(true);
+    if (first.isEmpty()) first = place.panel;
+    if (old && side != DockSide::Tab) divide(placed[place.panel], old, place.share);
+  }
+  // Known to the manager, closed, so that they can be restored and opened.
+  for (const auto& [id, dock] : docks_)
+    if (!placed.contains(id)) {
+      manager_->addDockWidget(ads::RightDockWidgetArea, dock);
+      dock->toggleView(false);
+    }
+  for (const auto& [id, area] : placed) area->setCurrentIndex(0);
+}
+
+bool DockArea::isShown(const QString& panel) const {
+  const auto found = docks_.find(panel);
+  return found != docks_.end() && !found->second->isClosed();
+}
+
+void DockArea::showPanel(const QString& panel) {
+  const auto found = docks_.find(panel);
+  if (found == docks_.end()) return;
+  found->second->toggleView(true);
+  found->second->setAsCurrentTab();
+  found->second->raise();
+}
+
+void DockArea::togglePanel(const QString& panel) {
+  if (isShown(panel))
+    docks_.at(panel)->toggleView(false);
+  else
+    showPanel(panel);
+}
+
+QWidget* DockArea::panel(const QString& id) const {
+  const auto found = docks_.find(id);
+  return found == docks_.end() ? nullptr : found->second->widget();
+}
+
+void DockArea::restyle() {
+  const ThemeColours& c = context_.theme.colours();
+  const QPalette p = Theme::palette(context_.theme.isDark());
+  manager_->setStyleSheet(QString(R"(
+    ads--CDockContainerWidget { background: %1; }
+    ads--CDockContainerWidget > QSplitter { padding: 0; }
+    ads--CDockContainerWidget ads--CDockSplitter::handle { background: %2; }
+    ads--CDockAreaWidget { background: %3; border: none; }
+    ads--CDockAreaTitleBar { background: %3; border-bottom: 1px solid %2; padding: 0; }
+    ads--CDockWidget { background: %3; border: none; }
+    ads--CTitleBarButton { padding: 2px; border: none; background: transparent; }
+    ads--CTitleBarButton:hover { background: %2; }
+    ads--CDockWidgetTab { background: transparent; border: none; border-bottom: 2px solid transparent;
+                          padding: 4px 4px 2px 8px; min-height: 20px; }
+    ads--CDockWidgetTab[activeTab="true"] { border-bottom: 2px solid %5; }
+    ads--CDockWidgetTab QLabel { color: %6; }
+    ads--CDockWidgetTab[activeTab="true"] QLabel { color: %4; }
+    ads--CDockWidgetTab:hover QLabel { color: %4; }
+    #tabCloseButton { margin: 2px; padding: 0px; border: none; background: transparent; }
+    #tabCloseButton:hover { background: %2; border-radius: 2px; }
+  )")
+                              .arg(c.line.name(), c.line.name(), p.color(QPalette::Window).name(),
+                                   p.color(QPalette::WindowText).name(), c.accent.name(), c.muted.name()));
+}
+
+}  // namespace tiltmap::ui

@@ -1,0 +1,18 @@
+// The program with a window.
+#pragma once
+
+#include <string>
+
+#include "core/base/result.h"
+
+namespace tiltmap::ui {
+
+// Whether a window can be opened here; the error says why not. Quick, and before any QApplication: that one
+// ends the program where there is no display.
+Status displayThere();
+
+// Opens the window (on the project, where one is named) and returns when the last window is closed: the exit
+// code.
+int runWindow(int& argc, char** argv, const std::string& project);
+
+}  // namespace tiltmap::ui

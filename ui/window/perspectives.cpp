@@ -1,0 +1,68 @@
+#include "ui/window/perspectives.h"
+
+namespace tiltmap::ui {
+
+QString perspectiveName(Perspective perspective) {
+  switch (perspective) {
+    case Perspective::Capture:
+      return "Capture";
+    case Perspective::Inspect:
+      return "Inspect";
+    case Perspective::Register:
+      return "Register";
+    case Perspective::Relax:
+      return "Relax";
+  }
+  return {};
+}
+
+QString perspectiveHelp(Perspective perspective) {
+  switch (perspective) {
+    case Perspective::Capture:
+      return "Bring scans in: import, simulate, and see each one as it comes";
+    case Perspective::Inspect:
+      return "Look at every scan: depth image, 3D view and details side by side";
+    case Perspective::Register:
+      return "Find how pairs of scans fit together";
+    case Perspective::Relax:
+      return "Spread the remaining errors over the whole map";
+  }
+  return {};
+}
+
+std::vector<DockPlace> delivered(Perspective perspective) {
+  using enum DockSide;
+  switch (perspective) {
+    case Perspective::Capture:
+      return {{"view3d", Left, "", 0},
+              {"project-tree", Left, "view3d", 0.24},
+              {"details", Bottom, "project-tree", 0.45},
+              {"depth-image", Bottom, "view3d", 0.40},
+              {"log", Tab, "depth-image", 0}};
+    case Perspective::Inspect:
+      return {{"view3d", Left, "", 0},
+              {"project-tree", Left, "view3d", 0.24},
+              {"details", Bottom, "project-tree", 0.45},
+              {"depth-image", Bottom, "view3d", 0.45},
+              {"localisation", Tab, "depth-image", 0},
+              {"history", Tab, "details", 0},
+              {"log", Tab, "details", 0}};
+    case Perspective::Register:
+      return {{"view3d", Left, "", 0},
+              {"project-tree", Left, "view3d", 0.24},
+              {"details", Bottom, "project-tree", 0.45},
+              {"depth-image", Bottom, "view3d", 0.34},
+              {"localisation", Right, "depth-image", 0.5},
+              {"history", Tab, "localisation", 0},
+              {"log", Tab, "localisation", 0}};
+    case Perspective::Relax:
+      return {{"view3d", Left, "", 0},
+              {"project-tree", Left, "view3d", 0.24},
+              {"localisation", Bottom, "view3d", 0.38},
+              {"history", Bottom, "project-tree", 0.40},
+              {"log", Tab, "history", 0}};
+  }
+  return {};
+}
+
+}  // namespace tiltmap::ui
