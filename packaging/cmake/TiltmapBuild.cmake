@@ -37,9 +37,10 @@ if(TILTMAP_COVERAGE)
   target_link_options(tiltmap_build_flags INTERFACE --coverage)
 endif()
 
-# tiltmap_add_tests(NAME SOURCES... [LINKS lib...]): one GoogleTest program, its tests known to CTest.
+# tiltmap_add_tests(NAME SOURCES... [LINKS lib...] [OWN_MAIN]): one GoogleTest program, its tests known to CTest.
+# OWN_MAIN: a main() is among the sources.
 function(tiltmap_add_tests name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "OWN_MAIN" "TIMEOUT" "SOURCES;LINKS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
@@ -47,7 +48,8 @@ function(tiltmap_add_tests name)
     math(EXPR ARG_TIMEOUT "${ARG_TIMEOUT} * 6")
   endif()
   add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE tiltmap_build_flags ${ARG_LINKS} GTest::gmock GTest::gtest GTest::gtest_main)
+  target_link_libraries(${name} PRIVATE tiltmap_build_flags ${ARG_LINKS} GTest::gmock GTest::gtest
+    $<$<NOT:$<BOOL:${ARG_OWN_MAIN}>>:GTest::gtest_main>)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${name} PRIVATE TILTMAP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/bin)
