@@ -11,7 +11,7 @@ int openWindow(Context& context, const std::string& project) {
   static char name[] = "tiltmap";
   static char* words[] = {name, nullptr};
   static int count = 1;
-  return ui::runWindow(count, words, project);
+  return ui::runWindow(count, words, project, context.stop);
 }
 
 void addGui(CLI::App& app, Chosen& chosen) {

@@ -116,10 +116,7 @@ void addFileActions(ActionRegistry& actions, WindowCommands& window) {
                "Stop the work that is running, and close this window",
                "application-exit",
                {},
-               [&window] {
-                 window.workspace().jobs().cancelAll();
-                 window.widget()->close();
-               },
+               [&window] { window.closeNow(); },
                [&workspace] { return workspace.jobs().busy(); }});
 }
 

@@ -33,6 +33,7 @@ class WindowCommands {
   virtual void showPreferences() = 0;
   virtual void showAbout() = 0;
   virtual void newWindow() = 0;
+  virtual void closeNow() = 0;  // without asking: what runs is cancelled
   // In the tree: the current scan's name becomes editable.
   virtual void beginRename() = 0;
   virtual void beginNote() = 0;

@@ -1,9 +1,8 @@
 // What is known about the selected scan or link, and the scan's note.
 #pragma once
 
-#include <optional>
-
 #include <QWidget>
+#include <optional>
 
 #include "core/project/project_snapshot.h"
 #include "ui/panels/panel.h"

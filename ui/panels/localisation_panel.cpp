@@ -76,7 +76,7 @@ LocalisationPanel::LocalisationPanel(const PanelContext& context, QWidget* paren
   connect(stage_, qOverload<int>(&QComboBox::activated), this, [this](int row) {
     const QVariant chosen = stage_->itemData(row);
     context_.workspace.display().setStage(chosen.isValid() ? std::optional(static_cast<Stage>(chosen.toInt()))
-                                                         : std::nullopt);
+                                                           : std::nullopt);
   });
   connect(copy_, &QToolButton::clicked, this, [this] {
     QApplication::clipboard()->setText(model_->asText());

@@ -99,13 +99,13 @@ void ProjectTreePanel::showMenu(const QPoint& at) {
   QStringList ids;
   if (item && item->kind == TreeItem::Kind::Scan)
     ids = QStringList{"view.show",   "view.hide", "view.show-only", "view.show-all",  "",
-           "edit.rename", "edit.note", "edit.move-up",   "edit.move-down", "",
-           "edit.delete"};
+                      "edit.rename", "edit.note", "edit.move-up",   "edit.move-down", "",
+                      "edit.delete"};
   else if (item && item->kind == TreeItem::Kind::Link)
     ids = QStringList{"link.show", "link.register", "", "link.disable", "link.enable", "", "edit.delete"};
   else if (item && (item->kind == TreeItem::Kind::Stage || item->kind == TreeItem::Kind::StagesGroup))
     ids = QStringList{"stage.latest", "stage.truth", "stage.odometry", "stage.pairwise", "stage.relaxed", "",
-           "op.export"};
+                      "op.export"};
   else
     ids = QStringList{"op.import", "op.simulate", "op.register", "", "edit.select-all", "view.show-all"};
   context_.actions.refresh();

@@ -53,6 +53,7 @@ CommandPalette::CommandPalette(ActionRegistry& actions, QWidget* parent)
   search_->setObjectName("palette-search");
   search_->setPlaceholderText("Type what you want to do");
   search_->setAccessibleName("Command to find");
+  search_->setToolTip("Letters of a command's name, or words of its help; Enter runs the first");
   search_->installEventFilter(this);
   list_->setObjectName("palette-list");
   list_->setAccessibleName("Commands found");

@@ -74,6 +74,8 @@ DockArea::DockArea(const PanelContext& context, QWidget* parent)
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(manager_);
   makeDocks(context);
+  // Before any stored layout: the manager restores only docks that it has seen.
+  arrange(perspective_);
   restyle();
   connect(&context.theme, &Theme::changed, this, &DockArea::restyle);
 }
@@ -107,8 +109,9 @@ void DockArea::saveLayout() const {
 }
 
 void DockArea::setPerspective(Perspective perspective) {
-  if (perspective == perspective_ && !manager_->openedDockWidgets().isEmpty()) return;
-  if (!manager_->openedDockWidgets().isEmpty()) saveLayout();
+  if (restored_ && perspective == perspective_) return;
+  if (restored_) saveLayout();
+  restored_ = true;
   perspective_ = perspective;
   const QByteArray saved = context_.workspace.preferences().bytes(layoutKey(perspective));
   if (saved.isEmpty() || !manager_->restoreState(saved, kLayoutVersion)) arrange(perspective);

@@ -48,6 +48,7 @@ class DockArea : public QWidget {
   ads::CDockManager* manager_;
   std::map<QString, ads::CDockWidget*> docks_;
   Perspective perspective_ = Perspective::Inspect;
+  bool restored_ = false;  // a perspective has been set: its layout is the user's
 };
 
 }  // namespace tiltmap::ui

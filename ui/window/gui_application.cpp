@@ -27,6 +27,12 @@ void logFromQt(QtMsgType type, const QMessageLogContext&, const QString& text) {
   logLine(level, "Qt: " + text);
 }
 
+void closeEverything() {
+  for (QWidget* widget : QApplication::topLevelWidgets())
+    if (auto* window = qobject_cast<MainWindow*>(widget)) window->closeNow();
+  QApplication::quit();
+}
+
 }  // namespace
 
 Status displayThere() {
@@ -47,7 +53,7 @@ Status displayThere() {
   return {};
 }
 
-int runWindow(int& argc, char** argv, const std::string& project) {
+int runWindow(int& argc, char** argv, const std::string& project, const std::stop_token& stop) {
   QApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
   QApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
   QApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
@@ -71,7 +77,12 @@ int runWindow(int& argc, char** argv, const std::string& project) {
   if (!project.empty())
     QTimer::singleShot(0, window,
                        [window, project] { (void)window->workspace().session().open(qt(project)); });
+  // Called on the thread that waits for signals.
+  const std::stop_callback on_stop(stop, [&application] {
+    QMetaObject::invokeMethod(&application, closeEverything, Qt::QueuedConnection);
+  });
   const int code = QApplication::exec();
+  QCoreApplication::sendPostedEvents(nullptr, QEvent::DeferredDelete);  // windows go before what they look at
   logLine(LogLevel::Info, "closed");
   qInstallMessageHandler(nullptr);
   closeLogFile();

@@ -1,6 +1,7 @@
 // The program with a window.
 #pragma once
 
+#include <stop_token>
 #include <string>
 
 #include "core/base/result.h"
@@ -12,7 +13,7 @@ namespace tiltmap::ui {
 Status displayThere();
 
 // Opens the window (on the project, where one is named) and returns when the last window is closed: the exit
-// code.
-int runWindow(int& argc, char** argv, const std::string& project);
+// code. A stop (a signal) closes all windows without asking, what runs is cancelled.
+int runWindow(int& argc, char** argv, const std::string& project, const std::stop_token& stop);
 
 }  // namespace tiltmap::ui

@@ -198,6 +198,11 @@ void MainWindow::beginNote() {
   if (auto* details = qobject_cast<DetailsPanel*>(docks_->panel("details"))) details->beginNote();
 }
 
+void MainWindow::closeNow() {
+  workspace_->jobs().cancelAll();
+  close();
+}
+
 void MainWindow::closeEvent(QCloseEvent* event) {
   // The second time is meant.
   const bool asked = message_bar_->isVisible() && message_bar_->message().action == "file.quit-cancelling";

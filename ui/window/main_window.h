@@ -46,6 +46,7 @@ class MainWindow : public QMainWindow, public WindowCommands {
   void showPreferences() override;
   void showAbout() override;
   void newWindow() override;
+  void closeNow() override;
   void beginRename() override;
   void beginNote() override;
 

@@ -63,6 +63,7 @@ MessageBar::MessageBar(Messages& messages, ActionRegistry& actions, const Theme&
   text_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   action_->setObjectName("message-action");
   action_->setFocusPolicy(Qt::StrongFocus);
+  action_->setToolTip("What helps");
   action_->setToolButtonStyle(Qt::ToolButtonTextOnly);
   fold_->setCheckable(true);
   details_->setObjectName("message-details-text");
@@ -111,7 +112,10 @@ void MessageBar::show(const Message& message) {
   text_->setText(html);
   QAction* action = actions_.find(message.action);
   action_->setVisible(action);
-  if (action) action_->setText(action->iconText());
+  if (action) {
+    action_->setText(action->iconText());
+    action_->setToolTip(action->toolTip());
+  }
   details_->setPlainText(message.details);
   fold_->setVisible(!message.details.isEmpty());
   fold_->setChecked(false);

@@ -39,10 +39,13 @@ ParameterForm::ParameterForm(ParameterModel& model, Preferences& preferences, co
     row.error = new QLabel(this);
     row.error->setObjectName("error:" + name);
     row.error->setWordWrap(true);
-    grid->addWidget(row.label, line, 0, Qt::AlignTop | Qt::AlignLeft);
+    // Beside a field of several lines the label stands at its first.
+    const bool tall = editor->sizeHint().height() > 3 * row.label->sizeHint().height();
+    const Qt::Alignment level = tall ? Qt::AlignTop : Qt::AlignVCenter;
+    grid->addWidget(row.label, line, 0, level | Qt::AlignLeft);
     grid->addWidget(editor, line, 1);
     grid->addWidget(row.unit, line, 2);
-    grid->addWidget(row.reset, line, 3, Qt::AlignTop);
+    grid->addWidget(row.reset, line, 3, level);
     grid->addWidget(row.error, line + 1, 1, 1, 3);
     line += 2;
     connect(editor, &ParameterEditor::edited, this,

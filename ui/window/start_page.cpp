@@ -22,6 +22,7 @@ QLabel* title(const QString& text, double scale, QWidget* parent) {
   font.setPointSizeF(font.pointSizeF() * scale);
   font.setWeight(QFont::DemiBold);
   label->setFont(font);
+  label->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Fixed);
   return label;
 }
 
@@ -66,11 +67,12 @@ StartPage::StartPage(Workspace& workspace, ActionRegistry& actions, QWidget* par
       "None yet. Projects that you open are listed here; you can also drop a project or scan files "
       "on the window.");
   no_recent_->setWordWrap(true);
+  no_recent_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   auto* right = new QVBoxLayout;
   right->addWidget(title("Recent", 1.2, this));
   right->addWidget(no_recent_);
   right->addWidget(recent_, 1);
-  right->addStretch();
+  right->addStretch(0);
 
   auto* columns = new QHBoxLayout;
   columns->setSpacing(48);
