@@ -122,6 +122,7 @@ PreparedScanPtr prepare(const Scan& scan, const RegistrationSettings& settings) 
   if (!scan.image) throw std::invalid_argument("prepare: the scan has no range image");
   const auto begin = std::chrono::steady_clock::now();
   auto prepared = std::make_shared<PreparedScan>();
+  prepared->scan = scan;
   RangeImagePtr image = scan.image;
   prepared->raw_points = image->validCells();
   if (settings.filter != MedianWindow::None) {

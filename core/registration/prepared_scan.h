@@ -19,6 +19,7 @@ namespace tiltmap {
 // directions for the projective one. Empty elements are possible (a scan without a point) and mean no
 // information.
 struct PreparedScan {
+  Scan scan;  // what it was made from; without an image where it was put together from others
   SurfaceElements elements;
   std::optional<KdTree> tree;                // over element positions; absent where empty or not asked for
   std::optional<DirectionIndex> directions;  // likewise

@@ -1,6 +1,11 @@
 #include "core/registration/register_pair.h"
 
 #include <chrono>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 namespace tiltmap {
 
@@ -47,11 +52,34 @@ double fit(const PairResult& result) {
   return result.succeeded() ? result.overlap * result.agreement : -1.0;
 }
 
-Result<PairResult> run(const PreparedScanPtr& fixed, const PreparedScanPtr& moving, const Pose& start,
-                       const RegistrationSettings& settings, const JobControl& control,
-                       Clock::time_point begin) {
+// Standard deviation of the translation in its worst direction; infinite where one is free.
+double worstDeviation(const PairResult& result) {
+  const Eigen::FullPivLU<Matrix6d> information(result.information);
+  if (!information.isInvertible()) return std::numeric_limits<double>::infinity();
+  const Eigen::Matrix3d covariance = information.inverse().bottomRightCorner<3, 3>();
+  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
+}
+
+bool wantsCubes(const PreparedScan& fixed, const PreparedScan& moving, const PairResult& result,
+                const RegistrationSettings& settings) {
+  if (settings.patch_grouping != PatchGrouping::Auto || !fixed.scan.image || !moving.scan.image) return false;
+  if (!fixed.raster && !moving.raster) return false;
+  return !result.succeeded() || result.agreement < settings.retry_agreement ||
+         worstDeviation(result) > settings.retry_deviation_m;
+}
+
+Result<PairResult> run(PreparedScanPtr fixed, PreparedScanPtr moving, const Pose& start,
+                       RegistrationSettings settings, const JobControl& control, Clock::time_point begin) {
   auto best = runFrom(fixed, moving, start, settings, control);
   if (!best) return best;
+  if (wantsCubes(*fixed, *moving, *best, settings)) {
+    settings.patch_grouping = PatchGrouping::Cubes;
+    fixed = prepare(fixed->scan, settings);
+    moving = prepare(moving->scan, settings);
+    auto result = runFrom(fixed, moving, start, settings, control);
+    if (!result) return result;
+    if (result->succeeded() || !best->succeeded()) best = std::move(result);
+  }
   int retries = 0;
   if (best->agreement < settings.retry_agreement && !fixed->elements.empty() && !moving->elements.empty()) {
     for (const double turns : {1.0, -1.0, 2.0, -2.0}) {

@@ -34,6 +34,9 @@ struct PairResult {
   bool succeeded() const { return isSuccess(stop_reason); }
 };
 
+// Where patch-grouping auto cut a matrix into blocks and the result failed, agrees too little or is known
+// badly in some direction (retry_deviation), both scans are cut into cubes instead, which catch small things
+// better.
 // A result that agrees less than retry_agreement is doubted: the pair is registered again from other headings
 // of the moving scan. One of them is taken where it is not doubted itself and fits more (overlap times
 // agreement).

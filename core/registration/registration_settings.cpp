@@ -172,6 +172,13 @@ void addEnd(Table& t) {
          "headings "
          "and the result that fits most is kept; 0 never does.",
          "ours: right results on simulated drives had 0.61 or more, a wrong one 0.47");
+  t.real(
+      "retry-deviation", &S::retry_deviation_m, "mm", 0.0, 10000.0,
+      "A result that failed, agrees too little or has a direction with a larger standard deviation is tried "
+      "again with cubes where patch-grouping auto took blocks: cubes catch small things better, such as "
+      "poles "
+      "along a street.",
+      "ours", 0.001);
   t.angle("retry-heading", &S::retry_heading_rad, 0.1, 60.0,
           "Other headings lie this and twice this to either side of the start.",
           "ours: a turn measured by eye is off by ten degrees");

@@ -107,7 +107,8 @@ struct RegistrationSettings : RejectionSettings {
   double max_correction_rad = 1.5707963267948966;
 
   // Trying again (registerPair): a result that agrees less is doubted, and other headings are started from.
-  double retry_agreement = 0.5;                    // 0: never
+  double retry_agreement = 0.5;     // 0: never
+  double retry_deviation_m = 0.01;  // or one known worse than this: cubes are tried where auto took blocks
   double retry_heading_rad = 0.17453292519943295;  // 10 deg; once and twice this to either side
 };
 
