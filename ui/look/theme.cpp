@@ -2,9 +2,9 @@
 
 #include <QApplication>
 #include <QIcon>
-#include <QStyle>
-#include <QStyleFactory>
 #include <QToolTip>
+
+#include "ui/look/style.h"
 
 namespace tiltmap::ui {
 
@@ -92,7 +92,7 @@ ThemeColours Theme::coloursOf(bool dark) {
 Theme::Theme(Preferences& preferences, QObject* parent) : QObject(parent), preferences_(preferences) {
   const QPalette system = QApplication::palette();
   system_dark_ = system.color(QPalette::Window).lightness() < system.color(QPalette::WindowText).lightness();
-  QApplication::setStyle(QStyleFactory::create("Fusion"));
+  QApplication::setStyle(new Style);
   apply();
   connect(&preferences, &Preferences::themeChanged, this, [this] {
     apply();

@@ -100,7 +100,7 @@ QVariant LocalisationModel::headerData(int section, Qt::Orientation orientation,
   const QString name = unitName(unit);
   const QString small = unit == LengthUnit::Foot ? QString("ft") : QString("mm");
   const QStringList titles = {"Stop",      "x (" + name + ")", "y (" + name + ")", "z (" + name + ")",
-                              "heading x", "heading y",        "heading z",        "off by (" + small + ")",
+                              "heading x", "heading y",        "heading z",        "error (" + small + ")",
                               "turned (°)"};
   static const QStringList kTips = {"Index of the stop in the survey",
                                     "Position, to the right of stop 0",

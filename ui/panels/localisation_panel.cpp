@@ -49,6 +49,7 @@ LocalisationPanel::LocalisationPanel(const PanelContext& context, QWidget* paren
       view_(new TableView(this)) {
   stage_->setObjectName("localisation-stage");
   stage_->setAccessibleName("Stage of the poses");
+  stage_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
   stage_->setToolTip("Whose poses: the stage places the scans in all views");
   summary_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   copy_->setObjectName("localisation-copy");
@@ -57,7 +58,8 @@ LocalisationPanel::LocalisationPanel(const PanelContext& context, QWidget* paren
   view_->setAccessibleName("Localisation table");
   view_->setModel(model_);
   view_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
-  view_->horizontalHeader()->setMinimumSectionSize(52);
+  view_->horizontalHeader()->setSectionResizeMode(LocalisationModel::Stop, QHeaderView::ResizeToContents);
+  view_->horizontalHeader()->setMinimumSectionSize(48);
 
   auto* bar = new QHBoxLayout;
   bar->setContentsMargins(8, 4, 8, 4);

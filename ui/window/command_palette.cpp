@@ -59,6 +59,7 @@ CommandPalette::CommandPalette(ActionRegistry& actions, QWidget* parent)
   list_->setAccessibleName("Commands found");
   list_->setFocusPolicy(Qt::NoFocus);
   list_->setUniformItemSizes(true);
+  list_->setIconSize(QSize(16, 16));
   list_->setFrameShape(QFrame::NoFrame);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(8, 8, 8, 8);
@@ -90,9 +91,12 @@ void CommandPalette::filter(const QString& wanted) {
   }
   std::ranges::stable_sort(found, std::greater(), &std::pair<int, QAction*>::first);
   list_->clear();
+  QPixmap nothing(16, 16);
+  nothing.fill(Qt::transparent);
+  const QIcon blank(nothing);  // so that all texts begin at one line
   for (const auto& [rank, action] : found) {
     const QString keys = action->shortcut().toString(QKeySequence::NativeText);
-    auto* item = new QListWidgetItem(action->icon(),
+    auto* item = new QListWidgetItem(action->icon().isNull() ? blank : action->icon(),
                                      plainText(*action) + (keys.isEmpty() ? "" : "    " + keys), list_);
     item->setToolTip(action->statusTip());
     item->setData(Qt::UserRole, action->objectName());

@@ -115,6 +115,7 @@ void DockArea::setPerspective(Perspective perspective) {
   perspective_ = perspective;
   const QByteArray saved = context_.workspace.preferences().bytes(layoutKey(perspective));
   if (saved.isEmpty() || !manager_->restoreState(saved, kLayoutVersion)) arrange(perspective);
+  restyle();  // the areas are new, and not all of them take the sheet that was there before them
   Q_EMIT perspectiveChanged();
   Q_EMIT panelsChanged();
 }
@@ -175,6 +176,11 @@ QWidget* DockArea::panel(const QString& id) const {
   return found == docks_.end() ? nullptr : found->second->widget();
 }
 
+void DockArea::showEvent(QShowEvent* event) {
+  QWidget::showEvent(event);
+  restyle();
+}
+
 void DockArea::restyle() {
   const ThemeColours& c = context_.theme.colours();
   const QPalette p = Theme::palette(context_.theme.isDark());
@@ -193,11 +199,13 @@ void DockArea::restyle() {
     ads--CDockWidgetTab QLabel { color: %6; }
     ads--CDockWidgetTab[activeTab="true"] QLabel { color: %4; }
     ads--CDockWidgetTab:hover QLabel { color: %4; }
-    #tabCloseButton { margin: 2px; padding: 0px; border: none; background: transparent; }
+    #tabCloseButton { margin: 2px; padding: 0px; border: none; background: transparent;
+                      qproperty-icon: url(:/tiltmap/icons/tab-close-%7.svg); qproperty-iconSize: 12px; }
     #tabCloseButton:hover { background: %2; border-radius: 2px; }
   )")
                               .arg(c.line.name(), c.line.name(), p.color(QPalette::Window).name(),
-                                   p.color(QPalette::WindowText).name(), c.accent.name(), c.muted.name()));
+                                   p.color(QPalette::WindowText).name(), c.accent.name(), c.muted.name(),
+                                   context_.theme.isDark() ? "dark" : "light"));
 }
 
 }  // namespace tiltmap::ui

@@ -38,6 +38,9 @@ class DockArea : public QWidget {
   void perspectiveChanged();
   void panelsChanged();
 
+ protected:
+  void showEvent(QShowEvent* event) override;
+
  private:
   void makeDocks(const PanelContext& context);
   void arrange(Perspective perspective);

@@ -46,7 +46,7 @@ OperationDialog::OperationDialog(const Operation& operation, Workspace& workspac
   model_->restore(workspace.preferences().lastParameters(qt(operation.id())));
   form_ = new ParameterForm(*model_, workspace.preferences(), theme, this);
 
-  auto* help = new QLabel(qt(operation.help()), this);
+  auto* help = new QLabel(qt(operation.help()).remove('`'), this);
   help->setWordWrap(true);
   auto* top = new QHBoxLayout;
   top->setSpacing(8);

@@ -6,6 +6,7 @@
 #include <QLineEdit>
 #include <QPlainTextEdit>
 #include <QToolButton>
+#include <map>
 
 #include "core/project/stage.h"
 #include "ui/look/icons.h"
@@ -145,9 +146,10 @@ ParameterEditor* textEditor(const Operation& operation, const ParameterInfo& inf
     for (const Stage stage : kStages) stages.push_back(stageName(stage));
     return new ChoiceEditor(stages, "latest", parent);
   }
-  const bool list =
-      info.name == "pairs" || info.name == "scans" || info.name == "pin" || info.name == "fixed";
-  auto* line = new LineEditor(false, list ? "all" : "", parent);
+  static const std::map<std::string, QString> kEmpty = {
+      {"pairs", "every scan with the one before it"}, {"scans", "all"}, {"pin", "none"}};
+  const auto empty = kEmpty.find(info.name);
+  auto* line = new LineEditor(false, empty == kEmpty.end() ? QString() : empty->second, parent);
   if (info.name == "file")
     line->addBrowse(
         {FileQuestion::Save,

@@ -1,0 +1,20 @@
+// Fusion with frames that can be seen on a dark ground: its own are always darker than the window.
+#pragma once
+
+#include <QProxyStyle>
+
+namespace tiltmap::ui {
+
+class Style : public QProxyStyle {
+  Q_OBJECT
+
+ public:
+  Style();
+
+  void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
+                     const QWidget* widget) const override;
+  int styleHint(StyleHint hint, const QStyleOption* option, const QWidget* widget,
+                QStyleHintReturn* result) const override;
+};
+
+}  // namespace tiltmap::ui
