@@ -7,6 +7,7 @@
 #include <QVBoxLayout>
 
 #include "ui/actions/action_registry.h"
+#include "ui/look/empty_state.h"
 #include "ui/models/project_tree_model.h"
 #include "ui/models/workspace.h"
 
@@ -16,7 +17,9 @@ ProjectTreePanel::ProjectTreePanel(const PanelContext& context, QWidget* parent)
     : QWidget(parent),
       context_(context),
       model_(new ProjectTreeModel(context.workspace, this)),
-      view_(new QTreeView(this)) {
+      view_(new QTreeView(this)),
+      empty_(new EmptyState("This project has no scans yet. Import scan files, or drop them on the window.",
+                            context.actions.get("op.import"), this)) {
   view_->setObjectName("project-tree-view");
   view_->setAccessibleName("Project tree");
   view_->setModel(model_);
@@ -34,11 +37,14 @@ ProjectTreePanel::ProjectTreePanel(const PanelContext& context, QWidget* parent)
   view_->installEventFilter(this);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->addWidget(view_);
+  layout->addWidget(view_, 1);
+  layout->addWidget(empty_);
+  empty_->setObjectName("project-tree-empty");
   setFocusProxy(view_);
 
   connect(model_, &QAbstractItemModel::modelReset, this, [this] {
     expandGroups();
+    showEmpty();
     showSelection();
   });
   connect(view_->selectionModel(), &QItemSelectionModel::selectionChanged, this,
@@ -47,7 +53,14 @@ ProjectTreePanel::ProjectTreePanel(const PanelContext& context, QWidget* parent)
   connect(&context.workspace.selection(), &Selection::linksChanged, this, &ProjectTreePanel::showSelection);
   connect(view_, &QWidget::customContextMenuRequested, this, &ProjectTreePanel::showMenu);
   connect(view_, &QAbstractItemView::doubleClicked, this, &ProjectTreePanel::activate);
+  connect(&context.workspace.jobs(), &JobQueue::busyChanged, this, &ProjectTreePanel::showEmpty);
   expandGroups();
+  showEmpty();
+}
+
+void ProjectTreePanel::showEmpty() {
+  const SnapshotPtr snapshot = context_.workspace.snapshot();
+  empty_->setVisible(snapshot && snapshot->scans().empty() && !context_.workspace.jobs().busy());
 }
 
 void ProjectTreePanel::expandGroups() {

@@ -9,6 +9,7 @@ class QTreeView;
 
 namespace tiltmap::ui {
 
+class EmptyState;
 class ProjectTreeModel;
 
 class ProjectTreePanel : public QWidget {
@@ -27,6 +28,7 @@ class ProjectTreePanel : public QWidget {
 
  private:
   void expandGroups();
+  void showEmpty();
   void takeSelection();  // tree to the shared selection
   void showSelection();  // the other way
   void showMenu(const QPoint& at);
@@ -35,6 +37,7 @@ class ProjectTreePanel : public QWidget {
   PanelContext context_;
   ProjectTreeModel* model_;
   QTreeView* view_;
+  EmptyState* empty_;
   bool following_ = false;
 };
 

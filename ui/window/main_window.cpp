@@ -3,7 +3,9 @@
 #include <QCloseEvent>
 #include <QDragEnterEvent>
 #include <QFileInfo>
+#include <QGuiApplication>
 #include <QMimeData>
+#include <QScreen>
 #include <QStackedWidget>
 #include <QVBoxLayout>
 
@@ -87,7 +89,9 @@ void MainWindow::addActions() {
 }
 
 void MainWindow::restoreWindow() {
-  resize(1366, 768);
+  // With its frame inside the screen, where that is a small one.
+  const QRect screen = QGuiApplication::primaryScreen()->availableGeometry();
+  resize(QSize(1366, 768).boundedTo(screen.size() - QSize(8, 40)));
   restoreGeometry(preferences_.bytes("window/geometry"));
   const QString name = preferences_.text("window/perspective", "inspect");
   for (const Perspective perspective : kPerspectives)

@@ -71,7 +71,7 @@ MessageBar::MessageBar(Messages& messages, ActionRegistry& actions, const Theme&
   details_->setReadOnly(true);
   details_->setMaximumHeight(fontMetrics().height() * 7);
   auto* close = flatButton("message-close", {}, "Close this message", this);
-  close->setIcon(icon("window-close"));
+  close->setIcon(icon("close"));
   close->setAccessibleName("Close the message");
 
   auto* line = new QHBoxLayout;

@@ -71,8 +71,8 @@ StartPage::StartPage(Workspace& workspace, ActionRegistry& actions, QWidget* par
   auto* right = new QVBoxLayout;
   right->addWidget(title("Recent", 1.2, this));
   right->addWidget(no_recent_);
-  right->addWidget(recent_, 1);
-  right->addStretch(0);
+  right->addWidget(recent_, 100);
+  right->addStretch(1);
 
   auto* columns = new QHBoxLayout;
   columns->setSpacing(48);

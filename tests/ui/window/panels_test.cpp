@@ -47,6 +47,14 @@ TEST_F(PanelsTest, ClickingAScanSelectsItEverywhere) {
   EXPECT_EQ(tree->model().itemAt(tree->view()->currentIndex())->scan, id(2));
 }
 
+TEST_F(PanelsTest, AnEmptyProjectSaysWhatToDoNext) {
+  makeProject(0);
+  EXPECT_TRUE(find("project-tree-empty")->isVisible());
+  must(workspace().session().apply(importEdit(sampleScans(1))));
+  settle();
+  EXPECT_FALSE(find("project-tree-empty")->isVisible());
+}
+
 TEST_F(PanelsTest, TheCheckBoxInTheTreeHides) {
   makeProject(2);
   auto* tree = panel<ProjectTreePanel>("project-tree");
