@@ -63,6 +63,7 @@ void addEdits(CLI::App& app, Chosen& chosen);    // rename, note, survey, delete
 void addPhoto(CLI::App& app, Chosen& chosen);
 void addLink(CLI::App& app, Chosen& chosen);
 void addFiles(CLI::App& app, Chosen& chosen);  // copy, merge, compact, verify
+void addScreenshot(CLI::App& app, Chosen& chosen);
 void addGui(CLI::App& app, Chosen& chosen);
 
 // The window, on a project where one is named; fails where there is no display.

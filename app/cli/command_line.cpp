@@ -89,7 +89,7 @@ int run(int argc, char** argv) {
   Chosen chosen;
   for (const auto add :
        {addNew, addSimulate, addImport, addInfo, addRegister, addRelax, addPoses, addEvaluate, addExport,
-        addParameters, addHistory, addEdits, addPhoto, addLink, addFiles, addDemo, addGui})
+        addParameters, addHistory, addEdits, addPhoto, addLink, addFiles, addDemo, addScreenshot, addGui})
     add(app, chosen);
 
   try {

@@ -1,11 +1,13 @@
 // The list of the window's panels. A new one is declared in a file of its own and added here; its places are
 // in ui/window/perspectives.cpp.
+#include "ui/panels/depth_image_panel.h"
 #include "ui/panels/details_panel.h"
 #include "ui/panels/history_panel.h"
 #include "ui/panels/localisation_panel.h"
 #include "ui/panels/log_panel.h"
 #include "ui/panels/panel.h"
 #include "ui/panels/project_tree_panel.h"
+#include "ui/panels/view3d_panel.h"
 
 namespace tiltmap::ui {
 
@@ -22,6 +24,9 @@ const std::vector<PanelInfo>& panels() {
   static const std::vector<PanelInfo> list = {
       {"project-tree", "Project", "view-list-tree", "Scans, links and results of the project",
        make<ProjectTreePanel>},
+      {"view3d", "3D view", "draw-cuboid", "The scans in space, with path and headings", make<View3dPanel>},
+      {"depth-image", "Depth image", "range-matrix", "The range matrix of a scan, cell by cell",
+       make<DepthImagePanel>},
       {"details", "Details", "documentinfo", "What is known about the selected scan or link",
        make<DetailsPanel>},
       {"localisation", "Localisation", "table", "Where the stops are, by stage", make<LocalisationPanel>},

@@ -2,7 +2,9 @@
 
 #include <QApplication>
 #include <QFileInfo>
+#include <QSurfaceFormat>
 #include <QTimer>
+#include <QVTKOpenGLNativeWidget.h>
 #include <cstdlib>
 #include <string_view>
 #include <xcb/xcb.h>
@@ -57,6 +59,9 @@ int runWindow(int& argc, char** argv, const std::string& project, const std::sto
   QApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
   QApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
   QApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
+  QSurfaceFormat format = QVTKOpenGLNativeWidget::defaultFormat();
+  format.setSamples(0);  // slow where software draws, and points gain nothing
+  QSurfaceFormat::setDefaultFormat(format);
   QApplication application(argc, argv);
   QApplication::setApplicationName("tiltmap");
   QApplication::setApplicationDisplayName({});

@@ -1,0 +1,126 @@
+// tiltmap screenshot P.tiltmap OUT.png: a picture, with no display and no window.
+#include <algorithm>
+#include <cctype>
+
+#include "app/cli/operation_runner.h"
+#include "core/base/text.h"
+#include "core/products/png.h"
+#include "ui/scene/screenshots.h"
+
+namespace tiltmap::cli {
+
+namespace {
+
+struct ScreenshotWords {
+  std::string project, file;
+  std::string panel = "map", size, stage, view = "iso", colour = "scan", quantity = "range", points = "all";
+  long long scan = -1;
+  double point_size = 2.0;
+  bool white = false;
+};
+
+struct Size {
+  int width = 0, height = 0;
+};
+
+Result<Size> sizeOf(const std::string& text) {
+  const auto parts = splitAt(text, 'x');
+  const auto width = parts.size() == 2 ? parseInteger(parts[0]) : std::nullopt;
+  const auto height = parts.size() == 2 ? parseInteger(parts[1]) : std::nullopt;
+  if (!width || !height || *width < 1 || *height < 1 || *width > 16384 || *height > 16384)
+    return fail("\"" + printable(text) + "\" is not a size", "--size",
+                "write width and height in pixels: 1600x900, up to 16384x16384");
+  return Size{static_cast<int>(*width), static_cast<int>(*height)};
+}
+
+Result<RgbImage> mapPicture(const SnapshotPtr& snapshot, const ScreenshotWords& words, const Size& size) {
+  ui::MapScreenshot settings;
+  settings.width_px = size.width;
+  settings.height_px = size.height;
+  settings.background = words.white ? TopViewBackground::White : TopViewBackground::Dark;
+  const auto stage = stageOrLatest(*snapshot, words.stage);
+  if (!stage) return fail(stage.error());
+  settings.stage = *stage;
+  const auto view = ui::parseSceneView(words.view);
+  if (!view) return fail(view.error());
+  settings.view = *view;
+  const auto colouring = ui::parseSceneColouring(words.colour);
+  if (!colouring) return fail(colouring.error());
+  settings.scene.colouring = *colouring;
+  settings.scene.point_px = words.point_size;
+  settings.scene.reduced = words.points == "reduced";
+  if (words.scan >= 0) {
+    if (const auto scan = snapshot->scanAt(words.scan); !scan) return fail(scan.error());
+    settings.scan = static_cast<std::size_t>(words.scan);
+  }
+  return ui::mapScreenshot(snapshot, settings);
+}
+
+Result<RgbImage> depthPictureOf(const SnapshotPtr& snapshot, const ScreenshotWords& words, const Size& size) {
+  ui::DepthScreenshot settings;
+  settings.width_px = size.width;
+  settings.height_px = size.height;
+  settings.background = words.white ? TopViewBackground::White : TopViewBackground::Dark;
+  const auto scan = snapshot->scanAt(std::max(0LL, words.scan));
+  if (!scan) return fail(scan.error());
+  settings.scan = static_cast<std::size_t>(std::max(0LL, words.scan));
+  const auto quantity = parseDepthQuantity(words.quantity);
+  if (!quantity) return fail(quantity.error());
+  settings.quantity = *quantity;
+  return ui::depthScreenshot(snapshot, settings);
+}
+
+int takeScreenshot(Context& context, const ScreenshotWords& words) {
+  const bool depth = words.panel == "depth";
+  const Result<Size> size =
+      words.size.empty() ? (depth ? Size{1200, 0} : Size{1600, 900}) : sizeOf(words.size);
+  if (!size) return context.console.wrongUsage(size.error());
+  if (Status status = checkOutput(words.file, words.project); !status)
+    return context.console.failed(status.error());
+  const auto snapshot = readProject(words.project);
+  if (!snapshot) return context.console.failed(snapshot.error());
+  const auto picture = depth ? depthPictureOf(*snapshot, words, *size) : mapPicture(*snapshot, words, *size);
+  if (!picture) return context.console.failed(picture.error());
+  if (Status status = writePng(words.file, *picture); !status) return context.console.failed(status.error());
+  context.console.printJson({{"file", words.file},
+                             {"panel", words.panel},
+                             {"width", picture->width},
+                             {"height", picture->height},
+                             {"warnings", nlohmann::json::array()}});
+  context.console.print("wrote " + words.file + " (" + std::to_string(picture->width) + " x " +
+                        std::to_string(picture->height) + ")");
+  return kDone;
+}
+
+}  // namespace
+
+void addScreenshot(CLI::App& app, Chosen& chosen) {
+  auto words = std::make_shared<ScreenshotWords>();
+  auto* command = app.add_subcommand("screenshot", "A picture of the map or of a scan; needs no display");
+  command->add_option("project", words->project, "The project")->required();
+  command->add_option("file", words->file, "The PNG file to write")->required();
+  command->add_option("--panel", words->panel, "map (3D view) or depth (depth image)")
+      ->check(CLI::IsMember({"map", "depth"}));
+  command->add_option("--size", words->size, "Width and height in pixels: 1600x900");
+  command->add_option("--stage", words->stage, "Whose poses place the scans; default: the latest");
+  command->add_option("--view", words->view, "Of the map, default iso")
+      ->check(CLI::IsMember({"top", "front", "side", "iso"}));
+  command->add_option("--scan", words->scan, "Number of a scan, from 0: the map shows it alone")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--colour", words->colour, "Points by scan, height, range, intensity, normal or age")
+      ->check(CLI::IsMember({"scan", "height", "range", "intensity", "normal", "age"}));
+  command
+      ->add_option(
+          "--quantity", words->quantity,
+          "Depth image of range, median, planar-median, changed, normal, incidence, intensity or code")
+      ->check(CLI::IsMember(
+          {"range", "median", "planar-median", "changed", "normal", "incidence", "intensity", "code"}));
+  command->add_option("--points", words->points, "all or reduced")->check(CLI::IsMember({"all", "reduced"}));
+  command->add_option("--point-size", words->point_size, "Pixels, 1 to 20")->check(CLI::Range(1.0, 20.0));
+  command->add_flag("--white", words->white, "On white, for print");
+  command->callback([words, &chosen] {
+    chosen.body = [words](Context& context) -> int { return takeScreenshot(context, *words); };
+  });
+}
+
+}  // namespace tiltmap::cli

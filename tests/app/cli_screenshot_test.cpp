@@ -1,0 +1,111 @@
+// Pictures without a display: the program runs with neither DISPLAY nor WAYLAND_DISPLAY
+// (tests/support/program.h).
+#include <set>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/png_pixels.h"
+#include "tests/support/program.h"
+
+namespace tiltmap::test {
+namespace {
+
+using nlohmann::json;
+
+class CliScreenshot : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(run({"new", "p.tiltmap"}).exit_code, 0);
+    ASSERT_EQ(run({"simulate", "p.tiltmap", "--experiment", "exp1", "--seed", "1"}).exit_code, 0);
+  }
+  ProgramRun run(const std::vector<std::string>& words) { return tiltmap(words, folder_.path()); }
+  // Skips where there is no OpenGL without a display.
+  bool rendered(const ProgramRun& result) {
+    if (result.err.find("EGL") != std::string::npos) return false;
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return true;
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(CliScreenshot, MapIsDrawnWithoutADisplay) {
+  const ProgramRun result =
+      run({"screenshot", "p.tiltmap", "map.png", "--size", "640x480", "--view", "top", "--json"});
+  if (!rendered(result)) GTEST_SKIP() << result.err;
+  EXPECT_EQ(result.err, "");  // nothing of the OpenGL loader's complaints
+  const json object = json::parse(result.out);
+  EXPECT_EQ(object["file"], "map.png");
+  EXPECT_EQ(object["width"], 640);
+  EXPECT_EQ(object["height"], 480);
+  EXPECT_TRUE(object["warnings"].empty());
+  const RgbImage picture = pngPixels(folder_.path() / "map.png");
+  ASSERT_EQ(picture.width, 640);
+  ASSERT_EQ(picture.height, 480);
+  std::set<std::string> colours;
+  for (const Rgb colour : picture.pixels) colours.insert(hexOf(colour));
+  EXPECT_GT(colours.size(), 100U);
+}
+
+TEST_F(CliScreenshot, ViewsStagesAndScansDiffer) {
+  std::set<std::string> files;
+  const std::vector<std::vector<std::string>> choices = {{"--view", "top"},
+                                                         {"--view", "side"},
+                                                         {"--view", "iso"},
+                                                         {"--view", "top", "--stage", "truth"},
+                                                         {"--view", "top", "--scan", "2"},
+                                                         {"--view", "top", "--colour", "height"},
+                                                         {"--view", "top", "--white"},
+                                                         {"--panel", "depth"},
+                                                         {"--panel", "depth", "--scan", "1"},
+                                                         {"--panel", "depth", "--quantity", "changed"}};
+  for (const auto& choice : choices) {
+    std::vector<std::string> words = {"screenshot", "p.tiltmap", "x.png", "--size", "400x300"};
+    words.insert(words.end(), choice.begin(), choice.end());
+    const ProgramRun result = run(words);
+    if (!rendered(result)) GTEST_SKIP() << result.err;
+    EXPECT_TRUE(files.insert(fileText(folder_.path() / "x.png")).second) << choice.back();
+  }
+}
+
+TEST_F(CliScreenshot, DepthImageNeedsNoOpenGlAndHasTheSizeAsked) {
+  ASSERT_EQ(run({"screenshot", "p.tiltmap", "d.png", "--panel", "depth", "--scan", "4", "--size", "700x420"})
+                .exit_code,
+            0);
+  const RgbImage picture = pngPixels(folder_.path() / "d.png");
+  EXPECT_EQ(picture.width, 700);
+  EXPECT_EQ(picture.height, 420);
+}
+
+TEST_F(CliScreenshot, RefusalsSayWhatToDoAndWriteNothing) {
+  const auto refused = [&](std::vector<std::string> words, int code, const std::string& part) {
+    words.insert(words.begin(), "screenshot");
+    const ProgramRun result = run(words);
+    EXPECT_EQ(result.exit_code, code) << result.err;
+    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / "no.png"));
+  };
+  refused({"p.tiltmap", "no.png", "--size", "640"}, 2, "size");
+  refused({"p.tiltmap", "no.png", "--size", "99999x10"}, 2, "16384");
+  refused({"p.tiltmap", "no.png", "--panel", "sky"}, 2, "sky");
+  refused({"p.tiltmap", "no.png", "--view", "up"}, 2, "up");
+  refused({"p.tiltmap", "no.png", "--stage", "relaxed"}, 1, "relaxed");
+  refused({"p.tiltmap", "no.png", "--scan", "77"}, 1, "77");
+  refused({"p.tiltmap", "no.png", "--panel", "depth", "--scan", "77"}, 1, "77");
+  refused({"missing.tiltmap", "no.png"}, 1, "missing.tiltmap");
+  const ProgramRun result = run({"screenshot", "p.tiltmap", "p.tiltmap"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(run({"info", "p.tiltmap"}).exit_code, 0);  // still a project
+}
+
+TEST_F(CliScreenshot, AnEmptyProjectHasNothingToDraw) {
+  ASSERT_EQ(run({"new", "empty.tiltmap"}).exit_code, 0);
+  for (const char* panel : {"map", "depth"}) {
+    const ProgramRun result = run({"screenshot", "empty.tiltmap", "no.png", "--panel", panel});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / "no.png"));
+  }
+}
+
+}  // namespace
+}  // namespace tiltmap::test

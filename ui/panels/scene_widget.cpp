@@ -1,0 +1,236 @@
+#include "ui/panels/scene_widget.h"
+
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QSurfaceFormat>
+#include <QWheelEvent>
+#include <cmath>
+#include <vtkGenericOpenGLRenderWindow.h>
+
+namespace tiltmap::ui {
+
+namespace {
+
+constexpr double kDragBegins_px = 4.0;
+constexpr int kStillAfter_ms = 200;
+
+}  // namespace
+
+SceneWidget::SceneWidget(Scene& scene, QWidget* parent)
+    : QVTKOpenGLNativeWidget(parent),
+      scene_(scene),
+      window_(vtkSmartPointer<vtkGenericOpenGLRenderWindow>::New()) {
+  QSurfaceFormat format = QVTKOpenGLNativeWidget::defaultFormat();
+  format.setSamples(0);  // slow where software draws, and points gain nothing
+  setFormat(format);
+  setRenderWindow(window_.Get());
+  // VTK's own handling of mouse and keys stays out: turning keeps z upright and goes about what was clicked.
+  setEnableHiDPI(false);
+  scene_.attach(*window_);
+  setFocusPolicy(Qt::StrongFocus);
+  setMouseTracking(true);
+  setMinimumSize(160, 120);
+  still_.setSingleShot(true);
+  still_.setInterval(kStillAfter_ms);
+  connect(&still_, &QTimer::timeout, this, [this] {
+    if (isDragging()) return;
+    scene_.setMoving(false);
+    update();
+  });
+  soon_.setSingleShot(true);
+  soon_.setInterval(0);
+  connect(&soon_, &QTimer::timeout, this, [this] { update(); });
+}
+
+SceneWidget::~SceneWidget() {
+  scene_.detach();
+}
+
+void SceneWidget::drawSoon() {
+  soon_.start();
+}
+
+Eigen::Vector2d SceneWidget::pixelAt(const QPointF& place) const {
+  const double ratio = devicePixelRatioF();
+  return {place.x() * ratio, (height() - place.y()) * ratio};
+}
+
+QPointF SceneWidget::placeOf(const Eigen::Vector2d& pixel) const {
+  const double ratio = devicePixelRatioF();
+  return {pixel.x() / ratio, height() - pixel.y() / ratio};
+}
+
+void SceneWidget::paintGL() {
+  scene_.setPixelRatio(devicePixelRatioF());
+  const int width_px = static_cast<int>(std::lround(width() * devicePixelRatioF()));
+  const int height_px = static_cast<int>(std::lround(height() * devicePixelRatioF()));
+  if (window_->GetSize()[0] != width_px || window_->GetSize()[1] != height_px)
+    window_->SetSize(width_px, height_px);
+  scene_.prepare();
+  window_->Render();
+  QVTKOpenGLNativeWidget::paintGL();
+}
+
+bool SceneWidget::event(QEvent* event) {
+  // Digits and letters are this view's own keys, not shortcuts of the window.
+  if (event->type() == QEvent::ShortcutOverride) {
+    const auto* key = static_cast<QKeyEvent*>(event);
+    if (!(key->modifiers() & (Qt::ControlModifier | Qt::AltModifier)) &&
+        QString("0245678 9FO+-=").contains(QChar(key->key())) && key->key() < 256)
+      event->accept();
+    return true;
+  }
+  switch (event->type()) {
+    // The base class would hand these to VTK's interactor as well.
+    case QEvent::MouseButtonPress:
+      mousePressEvent(static_cast<QMouseEvent*>(event));
+      return true;
+    case QEvent::MouseButtonRelease:
+      mouseReleaseEvent(static_cast<QMouseEvent*>(event));
+      return true;
+    case QEvent::MouseButtonDblClick:
+      mouseDoubleClickEvent(static_cast<QMouseEvent*>(event));
+      return true;
+    case QEvent::MouseMove:
+      mouseMoveEvent(static_cast<QMouseEvent*>(event));
+      return true;
+    case QEvent::Wheel:
+      wheelEvent(static_cast<QWheelEvent*>(event));
+      return true;
+    default:
+      return QVTKOpenGLNativeWidget::event(event);
+  }
+}
+
+void SceneWidget::beginMoving() {
+  scene_.setMoving(true);
+  still_.start();
+}
+
+void SceneWidget::mousePressEvent(QMouseEvent* event) {
+  setFocus(Qt::MouseFocusReason);
+  buttons_ = event->buttons();
+  pressed_ = last_ = event->localPos();
+  dragged_ = false;
+  scene_.setPivot(pixelAt(pressed_));
+  event->accept();
+}
+
+void SceneWidget::mouseMoveEvent(QMouseEvent* event) {
+  event->accept();
+  if (!isDragging()) {
+    Q_EMIT hovered(event->localPos());
+    return;
+  }
+  const QPointF from_press = event->localPos() - pressed_;
+  if (!dragged_ && std::hypot(from_press.x(), from_press.y()) < kDragBegins_px) return;
+  dragged_ = true;
+  const Eigen::Vector2d by = pixelAt(event->localPos()) - pixelAt(last_);
+  last_ = event->localPos();
+  beginMoving();
+  if (buttons_ == Qt::LeftButton && !(event->modifiers() & Qt::ShiftModifier))
+    scene_.turn(by);
+  else
+    scene_.pan(by);
+  update();
+}
+
+void SceneWidget::mouseReleaseEvent(QMouseEvent* event) {
+  event->accept();
+  const bool click = isDragging() && !dragged_ && event->button() == Qt::LeftButton;
+  buttons_ = event->buttons();
+  if (!isDragging()) still_.start();
+  if (click) Q_EMIT clicked(event->localPos());
+}
+
+void SceneWidget::mouseDoubleClickEvent(QMouseEvent* event) {
+  mousePressEvent(event);
+}
+
+void SceneWidget::wheelEvent(QWheelEvent* event) {
+  event->accept();
+  if (!still_.isActive()) scene_.setPivot(pixelAt(event->position()));
+  beginMoving();
+  scene_.zoom(std::pow(1.15, event->angleDelta().y() / 120.0));
+  update();
+}
+
+void SceneWidget::keyPressEvent(QKeyEvent* event) {
+  const double step = 40.0 * devicePixelRatioF();
+  const auto turned = [&](double x, double y) {
+    scene_.setPivot(pixelAt(QPointF(0.5 * width(), 0.5 * height())));
+    scene_.turn({x, y});
+  };
+  const auto zoomed = [&](double factor) {
+    scene_.setPivot(pixelAt(QPointF(0.5 * width(), 0.5 * height())));
+    scene_.zoom(factor);
+  };
+  if (event->modifiers() & (Qt::ControlModifier | Qt::AltModifier)) {
+    event->ignore();
+    return;
+  }
+  switch (event->key()) {
+    case Qt::Key_8:
+      scene_.setView(SceneView::Top);
+      break;
+    case Qt::Key_2:
+      scene_.setView(SceneView::Bottom);
+      break;
+    case Qt::Key_5:
+      scene_.setView(SceneView::Front);
+      break;
+    case Qt::Key_0:
+      scene_.setView(SceneView::Back);
+      break;
+    case Qt::Key_4:
+      scene_.setView(SceneView::Left);
+      break;
+    case Qt::Key_6:
+      scene_.setView(SceneView::Right);
+      break;
+    case Qt::Key_7:
+      scene_.setView(SceneView::Iso);
+      break;
+    case Qt::Key_9:
+      scene_.setView(SceneView::IsoBack);
+      break;
+    case Qt::Key_F:
+      Q_EMIT frameAsked();
+      break;
+    case Qt::Key_O:
+      scene_.setOrthographic(!scene_.isOrthographic());
+      Q_EMIT orthographicChanged();
+      break;
+    case Qt::Key_Left:
+      turned(-step, 0);
+      break;
+    case Qt::Key_Right:
+      turned(step, 0);
+      break;
+    case Qt::Key_Up:
+      turned(0, step);
+      break;
+    case Qt::Key_Down:
+      turned(0, -step);
+      break;
+    case Qt::Key_Plus:
+    case Qt::Key_Equal:
+      zoomed(1.25);
+      break;
+    case Qt::Key_Minus:
+      zoomed(0.8);
+      break;
+    default:
+      event->ignore();
+      return;
+  }
+  event->accept();
+  update();
+}
+
+void SceneWidget::leaveEvent(QEvent* event) {
+  Q_EMIT left();
+  QVTKOpenGLNativeWidget::leaveEvent(event);
+}
+
+}  // namespace tiltmap::ui

@@ -1,0 +1,291 @@
+#include "ui/panels/view3d_panel.h"
+
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QMenu>
+#include <QStackedLayout>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include "core/products/png.h"
+#include "ui/actions/action_registry.h"
+#include "ui/look/empty_state.h"
+#include "ui/look/icons.h"
+#include "ui/look/theme.h"
+#include "ui/models/project_words.h"
+#include "ui/models/strings.h"
+#include "ui/models/workspace.h"
+#include "ui/panels/scene_widget.h"
+#include "ui/window/file_dialogs.h"
+
+namespace tiltmap::ui {
+
+namespace {
+
+Rgb rgbOf(const QColor& colour) {
+  return {static_cast<std::uint8_t>(colour.red()), static_cast<std::uint8_t>(colour.green()),
+          static_cast<std::uint8_t>(colour.blue())};
+}
+
+QToolButton* toggle(QWidget* parent, const QString& name, const QString& text, const QString& tip, bool on) {
+  auto* button = new QToolButton(parent);
+  button->setObjectName(name);
+  button->setAccessibleName(text);
+  button->setText(text);
+  button->setToolTip(tip);
+  button->setCheckable(true);
+  button->setChecked(on);
+  button->setAutoRaise(true);
+  return button;
+}
+
+void describe(QWidget* widget, const QString& name, const QString& accessible, const QString& tip) {
+  widget->setObjectName(name);
+  widget->setAccessibleName(accessible);
+  widget->setToolTip(tip);
+}
+
+}  // namespace
+
+View3dPanel::View3dPanel(const PanelContext& context, QWidget* parent)
+    : QWidget(parent), context_(context), scene_(std::make_unique<Scene>()) {
+  view_ = new SceneWidget(*scene_, this);
+  describe(view_, "view3d-view", "3D view of the scans",
+           "Drag turns, right or Shift-drag shifts, wheel zooms, click picks a point.\n"
+           "Keys: 8 top, 2 bottom, 5 front, 0 back, 4 left, 6 right, 7 and 9 at an angle, O orthographic, "
+           "F frames the selection");
+  empty_ = new EmptyState("No scans yet. Import some, or simulate a survey.",
+                          context.actions.find("op.import"), this);
+  empty_->setObjectName("view3d-empty");
+  buildBar();
+  auto* pages = new QWidget(this);
+  pages_ = new QStackedLayout(pages);
+  pages_->addWidget(empty_);
+  pages_->addWidget(view_);
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(0);
+  layout->addWidget(bar_);
+  layout->addWidget(pages, 1);
+  setFocusProxy(view_);
+
+  Workspace& workspace = context.workspace;
+  connect(&workspace.session(), &ProjectSession::snapshotReplaced, this, &View3dPanel::refreshScans);
+  connect(&workspace.session(), &ProjectSession::opened, this, [this] { scene_->setView(SceneView::Iso); });
+  connect(&workspace.display(), &ScanDisplay::stageChanged, this, &View3dPanel::refreshScans);
+  connect(&workspace.display(), &ScanDisplay::visibilityChanged, this, [this] {
+    scene_->setVisible([this](ScanId scan) { return context_.workspace.display().isVisible(scan); });
+    view_->drawSoon();
+  });
+  connect(&workspace.selection(), &Selection::hoveredChanged, this, [this] {
+    scene_->markHovered(context_.workspace.selection().hovered());
+    view_->drawSoon();
+  });
+  connect(&workspace.selection(), &Selection::pickedChanged, this, [this] {
+    scene_->markPicked(context_.workspace.selection().picked());
+    view_->drawSoon();
+  });
+  connect(&context.theme, &Theme::changed, this, &View3dPanel::applyTheme);
+
+  connect(view_, &SceneWidget::clicked, this, [this](const QPointF& place) {
+    const auto cell = scene_->pick(view_->pixelAt(place), 8.0 * view_->devicePixelRatioF());
+    if (cell) context_.workspace.selection().setCurrentScan(cell->scan);
+    context_.workspace.selection().setPicked(cell);
+  });
+  connect(view_, &SceneWidget::hovered, this, [this](const QPointF& place) {
+    // Looking through more points than this would hold up the pointer.
+    if (scene_->pointsDrawn() > 2000000) return;
+    context_.workspace.selection().setHovered(
+        scene_->pick(view_->pixelAt(place), 6.0 * view_->devicePixelRatioF()));
+  });
+  connect(view_, &SceneWidget::left, this, [this] { context_.workspace.selection().setHovered({}); });
+  connect(view_, &SceneWidget::frameAsked, this, [this] {
+    scene_->frame(context_.workspace.selection().scans());
+    view_->drawSoon();
+  });
+  connect(view_, &SceneWidget::orthographicChanged, this,
+          [this] { orthographic_->setChecked(scene_->isOrthographic()); });
+  scene_->setVisible([this](ScanId scan) { return context_.workspace.display().isVisible(scan); });
+  applyTheme();
+  applySettings();
+  refreshScans();
+}
+
+View3dPanel::~View3dPanel() {
+  // The widget lets go of the scene before the scene goes.
+  delete view_;
+}
+
+QWidget* View3dPanel::view() const {
+  return view_;
+}
+
+QImage View3dPanel::picture() {
+  return view_->grabFramebuffer();
+}
+
+void View3dPanel::buildBar() {
+  Preferences& preferences = context_.workspace.preferences();
+  bar_ = new QWidget(this);
+  auto* layout = new QHBoxLayout(bar_);
+  layout->setContentsMargins(8, 4, 8, 4);
+  layout->setSpacing(8);
+
+  colouring_ = new QComboBox(bar_);
+  describe(colouring_, "view3d-colouring", "Colours of the points", "What the colours of the points show");
+  const std::pair<SceneColouring, const char*> colourings[] = {
+      {SceneColouring::Scan, "By scan"},     {SceneColouring::Height, "By height"},
+      {SceneColouring::Range, "By range"},   {SceneColouring::Intensity, "By intensity"},
+      {SceneColouring::Normal, "By normal"}, {SceneColouring::Age, "By age"}};
+  for (const auto& [colouring, text] : colourings)
+    colouring_->addItem(text, qt(sceneColouringName(colouring)));
+  colouring_->setCurrentIndex(
+      std::max(0, colouring_->findData(preferences.text("view3d/colouring", "scan"))));
+
+  stage_ = new QComboBox(bar_);
+  describe(stage_, "view3d-stage", "Stage of the poses", "Whose poses place the scans");
+
+  points_ = new QComboBox(bar_);
+  describe(points_, "view3d-points", "Raw or reduced points",
+           "All points, or those that are left when neighbours on a line nearer than 0.25 m become one");
+  points_->addItem("All points", "all");
+  points_->addItem("Reduced", "reduced");
+  points_->setCurrentIndex(preferences.text("view3d/points") == "reduced" ? 1 : 0);
+
+  size_ = new QDoubleSpinBox(bar_);
+  describe(size_, "view3d-point-size", "Point size in pixels", "Size of a point, 1 to 12 px");
+  size_->setRange(1.0, 12.0);
+  size_->setSingleStep(0.5);
+  size_->setDecimals(1);
+  size_->setSuffix(" px");
+  size_->setValue(preferences.text("view3d/point-size", "2").toDouble());
+
+  auto* views = new QToolButton(bar_);
+  describe(views, "view3d-views", "Views", "Look from above, from the front, from the side or at an angle");
+  views->setText("View");
+  views->setPopupMode(QToolButton::InstantPopup);
+  views->setAutoRaise(true);
+  auto* menu = new QMenu(views);
+  const std::tuple<SceneView, const char*, const char*> list[] = {
+      {SceneView::Top, "Top", "8"},         {SceneView::Bottom, "Bottom", "2"},
+      {SceneView::Front, "Front", "5"},     {SceneView::Back, "Back", "0"},
+      {SceneView::Left, "Left", "4"},       {SceneView::Right, "Right", "6"},
+      {SceneView::Iso, "At an angle", "7"}, {SceneView::IsoBack, "At an angle, from behind", "9"}};
+  for (const auto& [view, text, key] : list) {
+    QAction* action = menu->addAction(QString("%1\t%2").arg(text, key));
+    action->setObjectName(QString("view3d-view-%1").arg(key));
+    connect(action, &QAction::triggered, this, [this, chosen = view] {
+      scene_->setView(chosen);
+      view_->drawSoon();
+    });
+  }
+  menu->addSeparator();
+  QAction* frame = menu->addAction("Frame the selection\tF");
+  connect(frame, &QAction::triggered, this, [this] { Q_EMIT view_->frameAsked(); });
+  views->setMenu(menu);
+
+  orthographic_ =
+      toggle(bar_, "view3d-orthographic", "Ortho", "Without perspective, with a scale bar (O)", false);
+  path_ = toggle(bar_, "view3d-path", "Path", "The path, with an arrow along the heading of each stop",
+                 preferences.text("view3d/path", "1") == "1");
+  grid_ = toggle(bar_, "view3d-grid", "Grid", "A grid on the ground; its size stands in the corner",
+                 preferences.text("view3d/grid", "1") == "1");
+  auto* save = new QToolButton(bar_);
+  describe(save, "view3d-save", "Save picture", "Save what is shown as a PNG file");
+  save->setIcon(icon("document-save"));
+  save->setAutoRaise(true);
+  connect(save, &QToolButton::clicked, this, &View3dPanel::savePicture);
+
+  for (QWidget* widget : std::initializer_list<QWidget*>{colouring_, stage_, points_, size_, views,
+                                                         orthographic_, path_, grid_})
+    layout->addWidget(widget);
+  layout->addStretch();
+  layout->addWidget(save);
+  for (QComboBox* box : {colouring_, points_})
+    connect(box, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &View3dPanel::applySettings);
+  connect(size_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, &View3dPanel::applySettings);
+  for (QToolButton* button : {path_, grid_})
+    connect(button, &QToolButton::toggled, this, &View3dPanel::applySettings);
+  connect(orthographic_, &QToolButton::toggled, this, [this](bool on) {
+    if (scene_->isOrthographic() != on) scene_->setOrthographic(on);
+    view_->drawSoon();
+  });
+  connect(stage_, QOverload<int>::of(&QComboBox::activated), this, [this] {
+    const QString name = stage_->currentData().toString();
+    const auto stage = parseStage(utf8(name));
+    context_.workspace.display().setStage(stage ? std::optional(*stage) : std::nullopt);
+  });
+}
+
+void View3dPanel::applySettings() {
+  SceneSettings settings;
+  settings.colouring =
+      parseSceneColouring(utf8(colouring_->currentData().toString())).value_or(SceneColouring::Scan);
+  settings.reduced = points_->currentData() == "reduced";
+  settings.point_px = size_->value();
+  settings.path = path_->isChecked();
+  settings.grid = grid_->isChecked();
+  tellTroubles(scene_->setSettings(settings));
+  Preferences& preferences = context_.workspace.preferences();
+  preferences.setText("view3d/colouring", colouring_->currentData().toString());
+  preferences.setText("view3d/points", points_->currentData().toString());
+  preferences.setText("view3d/point-size", QString::number(size_->value()));
+  preferences.setText("view3d/path", path_->isChecked() ? "1" : "0");
+  preferences.setText("view3d/grid", grid_->isChecked() ? "1" : "0");
+  view_->drawSoon();
+}
+
+void View3dPanel::applyTheme() {
+  const ThemeColours& c = context_.theme.colours();
+  scene_->setColours(
+      {rgbOf(c.view_top), rgbOf(c.view_bottom), rgbOf(c.view_text), rgbOf(c.view_grid), rgbOf(c.no_data)});
+  view_->drawSoon();
+}
+
+void View3dPanel::refreshStages() {
+  stage_->clear();
+  const SnapshotPtr snapshot = context_.workspace.snapshot();
+  const ScanDisplay& display = context_.workspace.display();
+  stage_->addItem("Latest", QString());
+  if (snapshot)
+    for (const Stage stage : snapshot->stages()) stage_->addItem(stageTitle(stage), qt(stageName(stage)));
+  if (const auto chosen = display.chosenStage())
+    stage_->setCurrentIndex(std::max(0, stage_->findData(qt(stageName(*chosen)))));
+}
+
+void View3dPanel::refreshScans() {
+  const SnapshotPtr snapshot = context_.workspace.snapshot();
+  refreshStages();
+  tellTroubles(scene_->show(snapshot, snapshot ? context_.workspace.display().stage() : Stage::Odometry));
+  const bool some = snapshot && !snapshot->scans().empty();
+  pages_->setCurrentWidget(some ? static_cast<QWidget*>(view_) : empty_);
+  bar_->setEnabled(some);
+  view_->drawSoon();
+}
+
+void View3dPanel::tellTroubles(const std::vector<std::string>& troubles) {
+  if (troubles.empty()) return;
+  context_.workspace.messages().error({"some scans cannot be drawn: " + troubles.front(), "3D view",
+                                       "verify the project file (Project, Verify)"});
+}
+
+void View3dPanel::savePicture() {
+  askForFiles(this, context_.workspace.preferences(),
+              {FileQuestion::Save, "Save picture", "Pictures (*.png)", "png", "pictures",
+               context_.workspace.session().name() + "-3d.png"},
+              [this](const QStringList& files) {
+                const QImage image = picture().convertToFormat(QImage::Format_RGB888);
+                RgbImage rgb(image.width(), image.height(), {});
+                for (int y = 0; y < image.height(); ++y)
+                  for (int x = 0; x < image.width(); ++x) rgb.at(x, y) = rgbOf(image.pixelColor(x, y));
+                const Status status = writePng(pathOf(files.front()), rgb);
+                if (status)
+                  context_.workspace.messages().note("Wrote " + files.front());
+                else
+                  context_.workspace.messages().error(status.error());
+              });
+}
+
+}  // namespace tiltmap::ui

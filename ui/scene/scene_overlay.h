@@ -1,0 +1,61 @@
+// What lies flat over the 3D picture: triad, scale bar, colour bar, the grid's size.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+#include <vtkNew.h>
+#include <vtkSmartPointer.h>
+
+#include <Eigen/Core>
+
+#include "core/products/colour.h"
+
+class vtkActor2D;
+class vtkRenderer;
+class vtkTextActor;
+
+namespace tiltmap::ui {
+
+struct OverlayContents {
+  Rgb text{255, 255, 255};
+  Rgb ground{0, 0, 0};  // shines through behind text
+  double pixel_ratio = 1.0;
+  int width = 0, height = 0;  // device pixels
+  bool axes = true;
+  Eigen::Vector3d right, up;    // of the camera, world frame
+  double scale_m_per_px = 0.0;  // 0: no scale bar (perspective)
+  std::string bar_title;        // empty: no colour bar
+  std::string bar_low, bar_high;
+  double low_lightness = 0.38, high_lightness = 0.92;  // of evenColour
+  std::string grid;                                    // "Grid 2 m"
+};
+
+class SceneOverlay {
+ public:
+  explicit SceneOverlay(vtkRenderer& renderer);
+  ~SceneOverlay();
+  SceneOverlay(const SceneOverlay&) = delete;
+  SceneOverlay& operator=(const SceneOverlay&) = delete;
+
+  void show(const OverlayContents& contents);
+
+ private:
+  void begin();
+  void line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Rgb colour);
+  void box(const Eigen::Vector2d& low, const Eigen::Vector2d& high, Rgb colour);
+  void write(const std::string& text, const Eigen::Vector2d& at, int anchor, Rgb colour, double size_px);
+  void finish(double line_px);
+  void drawTriad(const OverlayContents& contents);
+  void drawScale(const OverlayContents& contents);
+  void drawBar(const OverlayContents& contents);
+
+  struct Shapes;
+  vtkRenderer& renderer_;
+  std::unique_ptr<Shapes> shapes_;
+  std::vector<vtkSmartPointer<vtkTextActor>> texts_;
+  std::size_t texts_used_ = 0;
+  Rgb ground_;
+};
+
+}  // namespace tiltmap::ui
