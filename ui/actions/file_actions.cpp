@@ -76,7 +76,7 @@ void addFileActions(ActionRegistry& actions, WindowCommands& window) {
   actions.add({"file.demo",
                "Open the &demo",
                "A simulated survey of 14 stops, made and registered the first time",
-               "tools-wizard",
+               "media-playback-start",
                {},
                [&window] { openDemo(window.workspace()); }});
   actions.add({"file.capture",

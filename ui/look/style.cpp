@@ -62,7 +62,7 @@ void Style::drawPrimitive(PrimitiveElement element, const QStyleOption* option, 
 
 int Style::styleHint(StyleHint hint, const QStyleOption* option, const QWidget* widget,
                      QStyleHintReturn* result) const {
-  if (hint == SH_DialogButtonBox_ButtonsHaveIcons) return 0;
+  if (hint == SH_DialogButtonBox_ButtonsHaveIcons || hint == SH_EtchDisabledText) return 0;
   return QProxyStyle::styleHint(hint, option, widget, result);
 }
 

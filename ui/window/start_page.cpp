@@ -69,6 +69,7 @@ StartPage::StartPage(Workspace& workspace, ActionRegistry& actions, QWidget* par
   no_recent_->setWordWrap(true);
   no_recent_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   auto* right = new QVBoxLayout;
+  right->setSpacing(8);
   right->addWidget(title("Recent", 1.2, this));
   right->addWidget(no_recent_);
   right->addWidget(recent_, 100);
