@@ -89,7 +89,7 @@ struct RegistrationSettings : RejectionSettings {
   double loss_scale_m = 0.1;      // Geman-McClure: the scale
   double loss_start_m = 2.0;      // annealed: first scale
   double loss_factor = 0.6;       // annealed: times this each step
-  double loss_follow = 3.0;       // annealed: nor above so many median residuals
+  double loss_follow = 5.0;       // annealed: nor above so many median residuals
   double loss_end_m = 0.02;       // annealed: down to here, then to the data's own
   double loss_deviations = 1.5;   // annealed, patches: in the end so many deviations of each pair's residual
   double loss_minimum_m = 0.002;  // annealed, points: in the end the median residual, but never below

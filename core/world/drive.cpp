@@ -27,7 +27,7 @@ Terrain waves(std::uint64_t seed) {
   };
   RandomStream random = RandomStream::keyed({seed, kTerrain});
   std::vector<Wave> sum;
-  for (const Band& band : {Band{38.0, 85.0, 0.22}, Band{10.0, 18.0, 0.04}, Band{5.0, 7.5, 0.012}})
+  for (const Band& band : {Band{38.0, 85.0, 0.08}, Band{10.0, 18.0, 0.04}, Band{5.0, 7.5, 0.012}})
     for (int i = 0; i < 3; ++i) {
       const double length = random.uniform(band.shortest_m, band.longest_m);
       const double way = random.uniform(0.0, 2.0 * std::numbers::pi);
@@ -43,7 +43,7 @@ Terrain waves(std::uint64_t seed) {
 
 // How strongly two places' heights go together: the lie of the land, and the bumps on it.
 double kinship(double squared_distance) {
-  return 0.6 * 0.6 * std::exp(-squared_distance / (2.0 * 12.0 * 12.0)) +
+  return 0.6 * 0.6 * std::exp(-squared_distance / (2.0 * 30.0 * 30.0)) +
          0.1 * 0.1 * std::exp(-squared_distance / (2.0 * 2.2 * 2.2));
 }
 
@@ -79,14 +79,14 @@ Eigen::Vector2d slopeOf(const Terrain& terrain, const Eigen::Vector2d& p) {
 }
 
 Drive drivenFromTables(std::uint64_t seed, const std::vector<TableRow>& measured,
-                       const std::vector<TableRow>& result, double street_rad, double earliest_v,
-                       double latest_v) {
+                       const std::vector<TableRow>& result, double street_rad, double stop0_v) {
   Drive drive;
   RandomStream placing = RandomStream::keyed({seed, kPlacing});
   drive.grid.seed = seed;
-  drive.grid.angle_rad = street_rad + placing.uniform(-0.05, 0.05);
+  drive.grid.style = &QuarterStyle::carPark();
+  drive.grid.angle_rad = street_rad + placing.uniform(-0.01, 0.01);
   // Stop 0, the site's origin, lies at (u, v) of the streets.
-  const double u = placing.uniform(-0.5, 0.5), v = placing.uniform(earliest_v, latest_v);
+  const double u = placing.uniform(-0.3, 0.3), v = stop0_v + placing.uniform(-0.3, 0.3);
   drive.grid.origin_m = -drive.grid.site(u, v);
   std::vector<Eigen::Vector3d> feet;
   for (const TableRow& row : result) feet.emplace_back(row.x_m, row.y_m, row.z_m - kScannerHeightM);
@@ -110,6 +110,7 @@ Drive drivenFromTables(std::uint64_t seed, const std::vector<TableRow>& measured
 Drive drivenAlong(std::uint64_t seed, std::vector<CoursePlace> course) {
   Drive drive;
   drive.grid.seed = seed;
+  drive.grid.style = &QuarterStyle::streets();
   drive.terrain = waves(seed);
   // The machine does not keep to the middle of the lane, nor look exactly along it.
   RandomStream wander = RandomStream::keyed({seed, kWander});
@@ -146,30 +147,33 @@ Drive drivenAlong(std::uint64_t seed, std::vector<CoursePlace> course) {
 }  // namespace
 
 Drive experiment1Drive(std::uint64_t seed) {
-  return drivenFromTables(seed, experiment1Measured(), experiment1Result(), -0.1, 14.0, 42.0);
+  return drivenFromTables(seed, experiment1Measured(), experiment1Result(), 0.1, 53.0);
 }
 
 Drive experiment2Drive(std::uint64_t seed, bool mended) {
   return drivenFromTables(seed, mended ? experiment2Mended() : experiment2Measured(), experiment2Result(),
-                          -0.7, 12.0, 26.0);
+                          -0.66, 39.5);
 }
 
 Drive loopDrive(std::uint64_t seed, int stops) {
+  const QuarterStyle& style = QuarterStyle::streets();
   const double round =
-      2.0 * (StreetGrid::kPitchU + StreetGrid::kPitchV) - 8.0 * kCornerM + 2.0 * std::numbers::pi * kCornerM;
+      2.0 * (style.pitch_u + style.pitch_v) - 8.0 * kCornerM + 2.0 * std::numbers::pi * kCornerM;
   const double start = RandomStream::keyed({seed, kPlacing}).uniform(12.0, 30.0);
-  return drivenAlong(seed, courseAlongStreets(static_cast<std::size_t>(stops), round / std::max(stops, 40),
-                                              start, [](std::size_t) { return 1; }));
+  return drivenAlong(seed,
+                     courseAlongStreets(QuarterStyle::streets(), static_cast<std::size_t>(stops),
+                                        round / std::max(stops, 40), start, [](std::size_t) { return 1; }));
 }
 
 Drive surveyDrive(std::uint64_t seed, int stops) {
   constexpr double kStep = 4.5;
   const double start = RandomStream::keyed({seed, kPlacing}).uniform(12.0, 30.0);
   return drivenAlong(
-      seed, courseAlongStreets(static_cast<std::size_t>(stops), kStep, start, [seed](std::size_t crossing) {
-        const double lot = RandomStream::keyed({seed, kTurns, crossing}).uniform();
-        return lot < 0.3 ? -1 : (lot < 0.6 ? 1 : 0);
-      }));
+      seed, courseAlongStreets(QuarterStyle::streets(), static_cast<std::size_t>(stops), kStep, start,
+                               [seed](std::size_t crossing) {
+                                 const double lot = RandomStream::keyed({seed, kTurns, crossing}).uniform();
+                                 return lot < 0.3 ? -1 : (lot < 0.6 ? 1 : 0);
+                               }));
 }
 
 }  // namespace tiltmap

@@ -54,9 +54,10 @@ struct SimulationSettings {
   double drive_s = 60.0;        // from the end of a scan to the start of the next
 };
 
-// One experiment with a seed: its stops, and the site around each of them. Different seeds give different
-// sites of the same kind; the stops of Exp1, Exp2 and Exp2Fixed are the thesis' for every seed, but for their
-// roll. Cheap to copy.
+// One experiment with a seed: its stops, and the site around each of them. Loop and Survey get another street
+// grid for every seed. Exp1, Exp2 and Exp2Fixed were driven in one car park: its houses, lamps, trees and taken
+// bays are the same for every seed to within 0.3 m; details (windows, cars' shapes and places, crowns, clutter,
+// terrain, reflectivity) and the stops' roll are the seed's. Their stops are the thesis'. Cheap to copy.
 class Experiment {
  public:
   // stops 0: the default number. Fewer are the first ones; more only for Loop (closer together, same course)

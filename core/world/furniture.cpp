@@ -29,7 +29,7 @@ void Furnisher::car(const Spot& spot, std::uint64_t looks) {
   if (far(spot)) return;
   RandomStream random(looks);
   const double x = 0.5 * random.uniform(1.62, 1.8), y = 0.5 * random.uniform(3.7, 4.6);
-  const bool van = random.uniform() < 0.12, saloon = random.uniform() < 0.5;
+  const bool van = random.uniform() < 0.05, saloon = random.uniform() < 0.5;
   const double waist = random.uniform(0.78, 0.9),
                roof = van ? random.uniform(1.85, 2.1) : random.uniform(1.36, 1.52);
   const double paint = random.uniform(0.15, 0.75), glass = 0.18, tyre = 0.1;
@@ -138,18 +138,15 @@ void Furnisher::lowWall(const Spot& spot, double length_m, double height_m) {
                               {0.18, 0.5 * length_m + 0.05, height_m + 0.07}, 0.55));
 }
 
-void Furnisher::building(const Spot& spot, double length_m, double depth_m, int least_storeys,
-                         std::uint64_t looks) {
+void Furnisher::building(const Spot& spot, const House& house, std::uint64_t looks) {
   // Beyond the radius only when all of it is.
-  if ((spot.place_m - centre_m_).norm() > radius_m_ + 0.5 * std::hypot(length_m, depth_m)) return;
+  if ((spot.place_m - centre_m_).norm() > radius_m_ + 0.5 * std::hypot(house.length_m, house.depth_m)) return;
   RandomStream random(looks);
-  const double lot = random.uniform();
-  const int storeys = std::max(least_storeys, lot < 0.4 ? 1 : (lot < 0.93 ? 2 : 3));
   Facade body;
   body.site_from_frame = upright(spot);
-  body.half_m = {0.5 * length_m, 0.5 * depth_m};
-  body.storey_m = random.uniform(3.0, 3.5);
-  body.height_m = storeys * body.storey_m + random.uniform(0.4, 0.9);  // with a parapet
+  body.half_m = {0.5 * house.length_m, 0.5 * house.depth_m};
+  body.storey_m = house.storey_m;
+  body.height_m = house.storeys * house.storey_m + random.uniform(0.4, 0.9);  // with a parapet
   body.bay_m = random.uniform(2.5, 3.4);
   body.window_width_m = body.bay_m * random.uniform(0.42, 0.6);
   body.window_height_m = random.uniform(1.3, 1.7);
@@ -170,13 +167,13 @@ void Furnisher::building(const Spot& spot, double length_m, double depth_m, int 
     shapes_.push_back(Hull::box(frame, {at - 0.2, y - 0.1, -3.0}, {at + 0.2, y + 0.28, top - 0.25}, wall));
   }
 
-  const double roof = random.uniform(), place = random.uniform(-0.5, 0.5), extra = random.uniform(1.8, 3.0);
-  if (roof < 0.35) {  // gabled, ridge along x
-    Hull gable = Hull::box(frame, {-x, -y - 0.3, top}, {x, y + 0.3, top + 0.35 * depth_m}, 0.3);
+  const double place = random.uniform(-0.5, 0.5), extra = random.uniform(1.8, 3.0);
+  if (house.roof == House::Roof::Gabled) {  // ridge along x
+    Hull gable = Hull::box(frame, {-x, -y - 0.3, top}, {x, y + 0.3, top + 0.35 * house.depth_m}, 0.3);
     gable.cut({0.0, y + 0.3, top}, {0.0, 0.6, 1.0});
     gable.cut({0.0, -y - 0.3, top}, {0.0, -0.6, 1.0});
     shapes_.push_back(gable);
-  } else if (roof < 0.7) {  // a stair tower
+  } else if (house.roof == House::Roof::StairTower) {
     const double half = std::min(2.2, 0.4 * x);
     const double at = place * 2.0 * (x - half);
     shapes_.push_back(Hull::box(frame, {at - half, -0.6 * y, top}, {at + half, y - 0.05, top + extra}, wall));

@@ -18,6 +18,14 @@ struct Spot {
   double turn_rad = 0.0;
 };
 
+struct House {
+  enum class Roof { Flat, Gabled, StairTower };
+  double length_m, depth_m;  // along x, along y
+  int storeys;
+  double storey_m;
+  Roof roof;
+};
+
 // Collects shapes that stand on a ground, and leaves out what lies beyond a radius. What a thing looks like
 // depends on its arguments alone; `looks` is the seed of one thing.
 class Furnisher {
@@ -33,9 +41,8 @@ class Furnisher {
   void bin(const Spot& spot);
   void sign(const Spot& spot, double facing_rad);
   void container(const Spot& spot);
-  void lowWall(const Spot& spot, double length_m, double height_m);  // along +y
-  // least_storeys to three storeys, front towards +y; length along x.
-  void building(const Spot& spot, double length_m, double depth_m, int least_storeys, std::uint64_t looks);
+  void lowWall(const Spot& spot, double length_m, double height_m);          // along +y
+  void building(const Spot& spot, const House& house, std::uint64_t looks);  // front towards +y
 
   std::vector<Shape> take() { return std::move(shapes_); }
 

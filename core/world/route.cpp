@@ -67,12 +67,13 @@ std::vector<TableRow> experiment2Mended() {
   return rows;
 }
 
-std::vector<CoursePlace> courseAlongStreets(std::size_t count, double step_m, double start_v_m,
+std::vector<CoursePlace> courseAlongStreets(const QuarterStyle& style, std::size_t count, double step_m,
+                                            double start_v_m,
                                             const std::function<int(std::size_t)>& turn_at) {
   std::vector<CoursePlace> places;
   places.reserve(count);
   CoursePlace here{0.0, start_v_m, 0.0};  // where the present piece of the way begins
-  double length = StreetGrid::kPitchV - kCornerM - start_v_m;
+  double length = style.pitch_v - kCornerM - start_v_m;
   double done = 0.0;  // of the present piece
   int bend = 0;       // of the present piece: -1 right, 0 straight, +1 left
   bool at_crossing = false;
@@ -103,7 +104,7 @@ std::vector<CoursePlace> courseAlongStreets(std::size_t count, double step_m, do
       } else {
         bend = 0;
         const bool main = std::abs(std::cos(here.heading_rad)) > 0.5;
-        length = (main ? StreetGrid::kPitchV : StreetGrid::kPitchU) - 2.0 * kCornerM;
+        length = (main ? style.pitch_v : style.pitch_u) - 2.0 * kCornerM;
       }
     }
     places.push_back(on(done));

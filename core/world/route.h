@@ -36,11 +36,11 @@ struct CoursePlace {
   double heading_rad = 0.0;  // against +v, left positive
 };
 
-// `count` places step_m apart along the streets from the middle of a main street towards +v, lane centre,
-// corners rounded with radius kCornerM. At each crossing turnAt(number of the crossing) says -1 right, 0
-// straight, +1 left.
+// `count` places step_m apart along the streets of a style, from v = start_v_m of a main street towards +v,
+// in the middle of the lane, corners rounded with radius kCornerM. At each crossing turn_at(number of the
+// crossing) says -1 right, 0 straight, +1 left.
 inline constexpr double kCornerM = 6.0;
-std::vector<CoursePlace> courseAlongStreets(std::size_t count, double step_m, double start_v_m,
-                                            const std::function<int(std::size_t)>& turn_at);
+std::vector<CoursePlace> courseAlongStreets(const QuarterStyle& style, std::size_t count, double step_m,
+                                            double start_v_m, const std::function<int(std::size_t)>& turn_at);
 
 }  // namespace tiltmap

@@ -14,7 +14,7 @@ namespace tiltmap {
 
 // Figures of the LMS 200/211/221/291 technical description: the spot is about 16 mm wide at
 // the window and grows by 11.9 mrad, so that at 10 m it is wider than the 0.5 deg between beams; 10 %
-// reflectivity is seen to 30 m.
+// reflectivity is seen to 20, 25, 30 or 42 m as configured, and outdoors one takes the most.
 struct LmsBeam {
   double spot_m = 0.016;
   double divergence_rad = 0.0119;  // full angle
@@ -22,7 +22,7 @@ struct LmsBeam {
   double resolution_m = 0.01;      // ranges come in whole multiples; 0: not rounded
   double maximum_range_m = 80.0;   // further strikes give code 8183
   double pulse_m = 2.5;            // strikes nearer together than this melt into one pulse (mixed pixels)
-  double sensitivity_m = 30.0;     // where a white wall of 10 % facing the beam is just seen
+  double sensitivity_m = 42.0;     // where a 10 % target facing the beam is just seen
   double turn_s = 0.01332;         // one turn of the mirror
 };
 

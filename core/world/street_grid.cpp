@@ -11,163 +11,260 @@ namespace tiltmap {
 
 namespace {
 
-constexpr double kKerb =
-    StreetGrid::kHalfLane + StreetGrid::kBayDepth;  // from the lane's centre, main streets
-constexpr double kCrossKerb = 4.0;                  // the same, cross streets
-constexpr double kFirstBay = 9.0;                   // from the crossing along v
-constexpr double kBuildingFrom = 9.5;               // likewise, end walls of buildings
+constexpr double kLane = 3.4;       // half the width of a main street's lane: the first bays begin there
+constexpr double kCrossKerb = 4.0;  // from a cross street's centre to its kerb
+constexpr double kEndWall = 9.5;    // from a cross street's centre to the first end wall
+constexpr double kQuarterTurn = 90.0 * kDegree;
 
 // Fills one block. Every random draw is made whether or not its shape is near enough to be kept, so that a
-// block is the same from wherever it is seen.
+// block is the same from wherever it is seen; and each in a statement of its own, for the order of a call's
+// arguments is the compiler's choice.
 class Block {
  public:
   Block(const StreetGrid& grid, int k, int l, Furnisher& out)
       : grid_(grid),
-        u0_(k * StreetGrid::kPitchU),
-        v0_(l * StreetGrid::kPitchV),
+        style_(*grid.style),
+        u0_(k * style_.pitch_u),
+        v0_(l * style_.pitch_v),
         out_(out),
-        random_(RandomStream::keyed({grid.seed, 0x51a7, static_cast<std::uint64_t>(std::int64_t{k}),
-                                     static_cast<std::uint64_t>(std::int64_t{l})})) {}
+        layout_(streamOf(style_.layout_seed.value_or(grid.seed), 0x51a7, k, l)),
+        parked_(streamOf(style_.layout_seed.value_or(grid.seed), 0xca45, k, l)),
+        detail_(streamOf(grid.seed, 0xde7a, k, l)) {}
 
   void fill() {
     for (const int side : {0, 1}) {
-      parkingRow(side);
+      for (const ParkingRow& row : style_.rows) parkingRow(side, row);
+      if (style_.island_to > style_.island_from) island(side);
       verge(side);
       buildings(side);
     }
-    crossVerge(0);
-    crossVerge(1);
+    for (const int side : {0, 1}) crossVerge(side);
     corners();
     courtyard();
   }
 
  private:
+  static RandomStream streamOf(std::uint64_t seed, std::uint64_t purpose, int k, int l) {
+    return RandomStream::keyed({seed, purpose, static_cast<std::uint64_t>(std::int64_t{k}),
+                                static_cast<std::uint64_t>(std::int64_t{l})});
+  }
   // Along the block's side 0 (u low) or 1 (u high): `in` metres from the lane's centre into the block.
-  double across(int side, double in) const { return side == 0 ? u0_ + in : u0_ + StreetGrid::kPitchU - in; }
+  double across(int side, double in) const { return side == 0 ? u0_ + in : u0_ + style_.pitch_u - in; }
   double inward(int side) const { return side == 0 ? 1.0 : -1.0; }
-  Spot spot(double u, double v, double turn_rad) const {
+  Spot spot(double u, double v, double turn_rad = 0.0) const {
     return {grid_.site(u, v), grid_.angle_rad + turn_rad};
   }
-  bool chance(double p) { return random_.uniform() < p; }
+  // What stands where, and by how much a seed's site differs from that.
+  double between(double low, double high) { return layout_.uniform(low, high); }
+  double about(double tolerance) { return detail_.uniform(-tolerance, tolerance); }
+  std::uint64_t looks() { return detail_.next(); }
 
-  void parkingRow(int side) {
-    const double end = StreetGrid::kPitchV - kFirstBay;
-    for (double v = kFirstBay; v + StreetGrid::kBayWidth <= end; v += StreetGrid::kBayWidth) {
-      const bool taken = chance(0.55), nose_in = chance(0.6);
-      const double in = StreetGrid::kHalfLane + 2.55 + random_.uniform(-0.2, 0.25);
-      const double turn =
-          random_.uniform(-0.05, 0.05) + (nose_in ? -0.5 : 0.5) * inward(side) * 180.0 * kDegree;
-      const Spot place =
-          spot(across(side, in), v0_ + v + 0.5 * StreetGrid::kBayWidth + random_.uniform(-0.15, 0.15), turn);
-      const std::uint64_t looks = random_.next();
-      if (taken) out_.car(place, looks);
+  void parkingRow(int side, const ParkingRow& row) {
+    constexpr int kGroup = 5;
+    const int bays = static_cast<int>((style_.pitch_v - 2.0 * style_.first_bay) / QuarterStyle::kBayWidth);
+    const auto takenBefore = [&row](int bay) { return static_cast<int>(std::lround(row.taken * bay)); };
+    for (int bay = 0, left = 0; bay < bays; ++bay) {
+      // As many of every group's bays as the share asks for, and no more.
+      const int of_group = std::min(kGroup, bays - bay / kGroup * kGroup) - bay % kGroup;
+      if (bay % kGroup == 0) left = takenBefore(bay + of_group) - takenBefore(bay);
+      const bool taken = parked_.uniform() * of_group < left;
+      const double nose = detail_.uniform() < 0.6 ? -1.0 : 1.0;  // into the bay, or out of it
+      const double in = row.from_m + 2.55 + detail_.uniform(-0.2, 0.25);
+      const double aside = about(0.15), turn = about(0.05) + nose * inward(side) * kQuarterTurn;
+      const std::uint64_t car_looks = looks();
+      if (!taken) continue;
+      --left;
+      const double v = style_.first_bay + (bay + 0.5) * QuarterStyle::kBayWidth;
+      out_.car(spot(across(side, in), v0_ + v + aside, turn), car_looks);
     }
   }
 
-  // Kerb behind the bays, lamp posts, trees, bins, signs, low walls in front of the buildings.
-  void verge(int side) {
-    const double from = kFirstBay - 3.0, to = StreetGrid::kPitchV - kFirstBay + 3.0;
+  void kerbLine(int side, double in, double from, double to) {
     for (double v = from; v + 3.0 <= to + 1e-9; v += 3.0)
-      out_.kerb(spot(across(side, kKerb + 0.08), v0_ + v + 1.5, 0.0), 3.0);
-    for (double v = from + random_.uniform(1.0, 6.0); v < to; v += random_.uniform(14.0, 19.0))
-      out_.lampPost(spot(across(side, kKerb + 0.55), v0_ + v, inward(side) * 90.0 * kDegree),
-                    random_.uniform(4.2, 6.5));
-    for (double v = from + random_.uniform(2.0, 7.0); v < to; v += random_.uniform(6.5, 13.0))
-      out_.tree(spot(across(side, kKerb + random_.uniform(1.2, 2.0)), v0_ + v, 0.0),
-                random_.uniform(0.75, 1.2), random_.next());
-    for (double v = from + random_.uniform(3.0, 10.0); v < to; v += random_.uniform(9.0, 22.0)) {
-      const double in = kKerb + random_.uniform(0.5, 1.0), kind = random_.uniform();
-      const Spot place = spot(across(side, in), v0_ + v, random_.uniform(-0.2, 0.2));
+      out_.kerb(spot(across(side, in), v0_ + v + 1.5), 3.0);
+  }
+
+  void lamps(int side, double in, double from, double to) {
+    for (double v = from + between(1.0, 6.0); v < to; v += between(14.0, 19.0)) {
+      const double high = between(4.2, 6.5), aside = about(0.3);
+      out_.lampPost(spot(across(side, in), v0_ + v + aside, inward(side) * kQuarterTurn), high);
+    }
+  }
+
+  void island(int side) {
+    const double from = style_.first_bay, to = style_.pitch_v - style_.first_bay;
+    kerbLine(side, style_.island_from + 0.08, from, to);
+    kerbLine(side, style_.island_to - 0.08, from, to);
+    const double middle = 0.5 * (style_.island_from + style_.island_to);
+    lamps(side, middle, from, to);
+  }
+
+  // Kerb behind the bays; lamp posts, trees, bins, signs and containers on the pavement.
+  void verge(int side) {
+    const double from = style_.first_bay - 3.0, to = style_.pitch_v - style_.first_bay + 3.0,
+                 kerb = style_.kerb();
+    kerbLine(side, kerb + 0.08, from, to);
+    lamps(side, kerb + 0.55, from, to);
+    for (double v = from + between(2.0, 7.0); v < to; v += between(6.5, 13.0)) {
+      const double in = kerb + between(1.2, 2.0), size = between(0.75, 1.2), aside = about(0.3);
+      out_.tree(spot(across(side, in), v0_ + v + aside), size, looks());
+    }
+    for (double v = from + detail_.uniform(3.0, 10.0); v < to; v += detail_.uniform(9.0, 22.0)) {
+      const double in = kerb + detail_.uniform(0.5, 1.0), kind = detail_.uniform(), turn = about(0.2);
+      const Spot place = spot(across(side, in), v0_ + v, turn);
       if (kind < 0.35)
         out_.bin(place);
       else if (kind < 0.7)
-        out_.sign(place, inward(side) * 90.0 * kDegree);
+        out_.sign(place, inward(side) * kQuarterTurn);
       else
         out_.container(place);
     }
   }
 
   void buildings(int side) {
-    double v = kBuildingFrom + random_.uniform(0.0, 3.0);
+    double v = kEndWall + between(0.0, 3.0);
     bool open_before = true;
-    while (v < StreetGrid::kPitchV - kBuildingFrom - 6.0) {
-      const double length = std::min(random_.uniform(9.0, 21.0), StreetGrid::kPitchV - kBuildingFrom - v);
-      const bool open = chance(0.22) && !open_before;
-      const double front = random_.uniform(12.2, 15.2), depth = random_.uniform(8.0, 10.5);
-      const double turn = random_.uniform(-0.03, 0.03);
-      const std::uint64_t looks = random_.next();
-      const double middle = v0_ + v + 0.5 * length;
+    while (v < style_.pitch_v - kEndWall - 6.0) {
+      const double wish = between(style_.shortest_house, style_.longest_house);
+      const double length = std::min(wish, style_.pitch_v - kEndWall - v);
+      const bool open = layout_.uniform() < style_.open_lots && !open_before;
+      const double front = style_.kerb() + between(style_.nearest_front, style_.furthest_front) + about(0.3);
+      const double depth = between(8.0, 10.5), turn = about(0.03), lot = layout_.uniform();
+      const double storey = between(style_.lowest_storey, style_.highest_storey), roof = layout_.uniform();
+      const std::uint64_t seed = looks();
       if (open) {
-        garden(side, v, length, looks);
+        garden(side, v, length);
       } else if (length > 5.0) {
+        const bool corner = v < 16.0 || v + length > style_.pitch_v - 24.0;
+        const int more = lot < style_.two_storeys_more                            ? 2
+                         : lot < style_.two_storeys_more + style_.one_storey_more ? 1
+                                                                                  : 0;
+        const int storeys = std::max(style_.least_storeys + more, corner ? style_.least_at_corner : 0);
+        const House::Roof form = roof < style_.gabled                 ? House::Roof::Gabled
+                                 : roof < 0.5 * (1.0 + style_.gabled) ? House::Roof::StairTower
+                                                                      : House::Roof::Flat;
         // The frame's +y looks back at the street.
-        const Spot place =
-            spot(across(side, front + 0.5 * depth), middle, turn + inward(side) * 90.0 * kDegree);
-        // At the corners never a low one.
-        const bool corner = v < 16.0 || v + length > StreetGrid::kPitchV - 24.0;
-        out_.building(place, length, depth, corner ? 2 : 1, looks);
+        out_.building(spot(across(side, front + 0.5 * depth), v0_ + v + 0.5 * length,
+                           turn + inward(side) * kQuarterTurn),
+                      {length, depth, storeys, storey, form}, seed);
       }
       open_before = open;
-      v += length + random_.uniform(2.5, 7.0);
+      v += length + between(2.5, 7.0);
     }
   }
 
   // A gap in the row: a low wall at the pavement and trees behind it.
-  void garden(int side, double v, double length, std::uint64_t looks) {
-    RandomStream random(looks);
-    out_.lowWall(spot(across(side, 11.6), v0_ + v + 0.5 * length, random.uniform(-0.06, 0.06)), length - 1.0,
-                 random.uniform(0.5, 1.1));
-    for (double place = 2.0; place < length - 1.0; place += random.uniform(4.0, 6.0))
-      out_.tree(spot(across(side, random.uniform(14.0, 19.0)), v0_ + v + place, 0.0),
-                random.uniform(0.9, 1.5), random.next());
+  void garden(int side, double v, double length) {
+    const double turn = about(0.06), high = between(0.5, 1.1);
+    out_.lowWall(spot(across(side, style_.kerb() + 3.2), v0_ + v + 0.5 * length, turn), length - 1.0, high);
+    for (double place = 2.0; place < length - 1.0; place += between(4.0, 6.0)) {
+      const double in = style_.kerb() + between(5.6, 10.6), size = between(0.9, 1.5), aside = about(0.3);
+      out_.tree(spot(across(side, in), v0_ + v + place + aside), size, looks());
+    }
   }
 
   void crossVerge(int side) {
-    const auto along = [&](double in) { return side == 0 ? v0_ + in : v0_ + StreetGrid::kPitchV - in; };
-    const double from = kKerb + 1.0, to = StreetGrid::kPitchU - kKerb - 1.0;
+    const auto along = [&](double in) { return side == 0 ? v0_ + in : v0_ + style_.pitch_v - in; };
+    const double from = style_.kerb() + 1.0, to = style_.pitch_u - style_.kerb() - 1.0;
     for (double u = from; u + 3.0 <= to + 1e-9; u += 3.0)
-      out_.kerb(spot(u0_ + u + 1.5, along(kCrossKerb + 0.08), 90.0 * kDegree), 3.0);
-    for (double u = from + random_.uniform(0.5, 4.0); u < to; u += random_.uniform(5.2, 7.2))
-      out_.tree(spot(u0_ + u, along(kCrossKerb + random_.uniform(1.5, 2.5)), 0.0), random_.uniform(1.0, 1.35),
-                random_.next());
-    for (double u = from + random_.uniform(2.0, 8.0); u < to; u += random_.uniform(16.0, 22.0))
-      out_.lampPost(spot(u0_ + u, along(kCrossKerb + 0.6), side == 0 ? 180.0 * kDegree : 0.0),
-                    random_.uniform(4.2, 6.5));
-    for (double u = from + random_.uniform(1.0, 6.0); u + 6.0 < to; u += random_.uniform(9.0, 18.0))
-      out_.lowWall(
-          spot(u0_ + u + 3.0, along(kCrossKerb + 4.2), 90.0 * kDegree + random_.uniform(-0.05, 0.05)),
-          random_.uniform(3.5, 6.0), random_.uniform(0.6, 1.6));
+      out_.kerb(spot(u0_ + u + 1.5, along(kCrossKerb + 0.08), kQuarterTurn), 3.0);
+    const double gap = style_.cross_tree_gap;
+    for (double u = from + between(0.5, 4.0); u < to; u += between(0.85 * gap, 1.15 * gap)) {
+      const double in = kCrossKerb + between(1.5, 2.5), size = style_.cross_tree_size * between(0.86, 1.14);
+      const double aside = about(0.3);
+      out_.tree(spot(u0_ + u + aside, along(in)), size, looks());
+    }
+    for (double u = from + between(2.0, 8.0); u < to; u += between(16.0, 22.0)) {
+      const double high = between(4.2, 6.5), aside = about(0.3);
+      out_.lampPost(spot(u0_ + u + aside, along(kCrossKerb + 0.6), side == 0 ? 2.0 * kQuarterTurn : 0.0),
+                    high);
+    }
+    for (double u = from + between(1.0, 6.0); u + 6.0 < to; u += between(9.0, 18.0)) {
+      const double turn = kQuarterTurn + about(0.05), length = between(3.5, 6.0), high = between(0.6, 1.6);
+      out_.lowWall(spot(u0_ + u + 3.0, along(kCrossKerb + 4.2), turn), length, high);
+    }
   }
 
   // Islands with a large tree where two streets meet: without them a crossing sees little but sky.
   void corners() {
     for (const int side : {0, 1})
       for (const bool far_end : {false, true}) {
-        const double in = random_.uniform(5.1, 5.8), along = random_.uniform(5.6, 6.4),
-                     size = random_.uniform(1.35, 1.5);
-        const std::uint64_t looks = random_.next();
-        const Spot place =
-            spot(across(side, in), far_end ? v0_ + StreetGrid::kPitchV - along : v0_ + along, 0.0);
+        const double in = between(5.1, 5.8), along = between(5.6, 6.4),
+                     size = style_.corner_tree_size * between(0.95, 1.05);
+        const Spot place = spot(across(side, in), far_end ? v0_ + style_.pitch_v - along : v0_ + along);
         out_.island(place, 1.0);
-        out_.tree(place, size, looks);
+        out_.tree(place, size, looks());
       }
   }
 
   void courtyard() {
-    const double middle = 0.5 * StreetGrid::kPitchU;
-    for (double v = 12.0 + random_.uniform(0.0, 8.0); v < StreetGrid::kPitchV - 12.0;
-         v += random_.uniform(10.0, 16.0))
-      out_.tree(spot(u0_ + middle + random_.uniform(-0.6, 0.6), v0_ + v, 0.0), random_.uniform(0.6, 0.8),
-                random_.next());
+    for (double v = 12.0 + between(0.0, 8.0); v < style_.pitch_v - 12.0; v += between(10.0, 16.0)) {
+      const double u = 0.5 * style_.pitch_u + between(-0.6, 0.6), size = between(0.6, 0.8);
+      out_.tree(spot(u0_ + u, v0_ + v), size, looks());
+    }
   }
 
   const StreetGrid& grid_;
+  const QuarterStyle& style_;
   double u0_, v0_;
   Furnisher& out_;
-  RandomStream random_;
+  RandomStream layout_, parked_, detail_;
 };
 
 }  // namespace
+
+const QuarterStyle& QuarterStyle::carPark() {
+  static const QuarterStyle style{.layout_seed = 2,
+                                  .pitch_u = 96.0,
+                                  .pitch_v = 88.0,
+                                  // Beyond the island: a row, a second aisle of 6 m, a row.
+                                  .rows = {{kLane, 0.0}, {10.2, 0.2}, {21.2, 0.6}},
+                                  .island_from = 8.4,
+                                  .island_to = 10.2,
+                                  .first_bay = 9.0,
+                                  .nearest_front = 6.5,
+                                  .furthest_front = 7.5,
+                                  .shortest_house = 20.0,
+                                  .longest_house = 26.0,
+                                  .one_storey_more = 0.0,
+                                  .two_storeys_more = 0.0,
+                                  .least_storeys = 3,
+                                  .least_at_corner = 3,
+                                  .lowest_storey = 3.25,
+                                  .highest_storey = 3.45,
+                                  .gabled = 0.0,
+                                  .open_lots = 0.0,
+                                  .cross_tree_gap = 8.0,
+                                  .cross_tree_size = 1.05,
+                                  .corner_tree_size = 1.6};
+  return style;
+}
+
+const QuarterStyle& QuarterStyle::streets() {
+  static const QuarterStyle style{.layout_seed = std::nullopt,
+                                  .pitch_u = 54.0,
+                                  .pitch_v = 66.0,
+                                  .rows = {{kLane, 0.55}},
+                                  .island_from = 0.0,
+                                  .island_to = 0.0,
+                                  .first_bay = 9.0,
+                                  .nearest_front = 3.8,
+                                  .furthest_front = 6.8,
+                                  .shortest_house = 9.0,
+                                  .longest_house = 21.0,
+                                  .one_storey_more = 0.5,
+                                  .two_storeys_more = 0.07,
+                                  .least_storeys = 1,
+                                  .least_at_corner = 2,
+                                  .lowest_storey = 3.0,
+                                  .highest_storey = 3.5,
+                                  .gabled = 0.35,
+                                  .open_lots = 0.22,
+                                  .cross_tree_gap = 6.2,
+                                  .cross_tree_size = 1.15,
+                                  .corner_tree_size = 1.42};
+  return style;
+}
 
 Eigen::Vector2d StreetGrid::site(double u_m, double v_m) const {
   const double c = std::cos(angle_rad), s = std::sin(angle_rad);
@@ -181,19 +278,22 @@ Eigen::Vector2d StreetGrid::grid(const Eigen::Vector2d& site_m) const {
 }
 
 double StreetGrid::groundReflectivity(double x_m, double y_m) const {
-  constexpr double kAsphalt = 0.2, kPaint = 0.6, kPavement = 0.32, kGrass = 0.45;
+  constexpr double kAsphalt = 0.25, kPaint = 0.6, kPavement = 0.32, kGrass = 0.45;
   const Eigen::Vector2d place = grid({x_m, y_m});
   // Distances from the nearest lane centre of either direction, and along the bays.
-  const double u = std::abs(place.x() - kPitchU * std::round(place.x() / kPitchU));
-  const double v_in = place.y() - kPitchV * std::floor(place.y() / kPitchV);
-  const double v = std::min(v_in, kPitchV - v_in);
-  if (v < kCrossKerb || u < kHalfLane) return kAsphalt;
-  if (u < kKerb) {
-    if (v < kFirstBay) return kAsphalt;
-    const double bay = (v_in - kFirstBay) / kBayWidth;
-    return std::abs(bay - std::round(bay)) * kBayWidth < 0.06 ? kPaint : kAsphalt;
-  }
-  return u < kKerb + 2.6 ? kPavement : kGrass;
+  const double u = std::abs(place.x() - style->pitch_u * std::round(place.x() / style->pitch_u));
+  const double v_in = place.y() - style->pitch_v * std::floor(place.y() / style->pitch_v);
+  const double v = std::min(v_in, style->pitch_v - v_in);
+  if (v < kCrossKerb || u < kLane) return kAsphalt;
+  if (u >= style->kerb()) return u < style->kerb() + 2.6 ? kPavement : kGrass;
+  if (v < style->first_bay) return kAsphalt;
+  if (u > style->island_from && u < style->island_to) return kGrass;
+  const double bay = (v_in - style->first_bay) / QuarterStyle::kBayWidth;
+  const bool line = std::abs(bay - std::round(bay)) * QuarterStyle::kBayWidth < 0.06;
+  const bool in_bay = std::any_of(style->rows.begin(), style->rows.end(), [u](const ParkingRow& row) {
+    return u > row.from_m && u < row.from_m + QuarterStyle::kBayDepth;
+  });
+  return line && in_bay ? kPaint : kAsphalt;
 }
 
 std::vector<Shape> shapesAround(const StreetGrid& grid, const Ground& ground, const Eigen::Vector2d& centre_m,
@@ -201,10 +301,9 @@ std::vector<Shape> shapesAround(const StreetGrid& grid, const Ground& ground, co
   Furnisher furnisher(ground, centre_m, radius_m);
   const Eigen::Vector2d c = grid.grid(centre_m);
   const auto index = [](double place, double pitch) { return static_cast<int>(std::floor(place / pitch)); };
-  for (int l = index(c.y() - radius_m, StreetGrid::kPitchV);
-       l <= index(c.y() + radius_m, StreetGrid::kPitchV); ++l)
-    for (int k = index(c.x() - radius_m, StreetGrid::kPitchU);
-         k <= index(c.x() + radius_m, StreetGrid::kPitchU); ++k)
+  const double pu = grid.style->pitch_u, pv = grid.style->pitch_v;
+  for (int l = index(c.y() - radius_m, pv); l <= index(c.y() + radius_m, pv); ++l)
+    for (int k = index(c.x() - radius_m, pu); k <= index(c.x() + radius_m, pu); ++k)
       Block(grid, k, l, furnisher).fill();
   return furnisher.take();
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -11,18 +12,49 @@
 
 namespace tiltmap {
 
-// Main streets run along v with parking bays on both sides; cross streets run along u. Lane centres lie at
-// u = k * kPitchU and v = l * kPitchV; block (k, l) is the rectangle from crossing (k, l) to (k+1, l+1).
-struct StreetGrid {
-  static constexpr double kPitchU = 54.0;
-  static constexpr double kPitchV = 66.0;
-  static constexpr double kHalfLane = 3.4;  // from the lane's centre to the bays or the kerb
+// A row of parking bays, square to the lane.
+struct ParkingRow {
+  double from_m = 0.0;  // its near edge, from the lane's centre
+  double taken = 0.5;   // share of bays with a car in it
+};
+
+// What a quarter looks like. Lengths in metres; "from the lane" means from the centre of a main street's
+// lane.
+struct QuarterStyle {
+  // What stands where; without it, every seed lays out its own quarter.
+  std::optional<std::uint64_t> layout_seed;
+  double pitch_u, pitch_v;               // between main streets, between cross streets
+  std::vector<ParkingRow> rows;          // beside a main street, from the lane outwards
+  double island_from, island_to;         // strip with lamps between two rows; equal: none
+  double first_bay;                      // from a crossing along the main street
+  double nearest_front, furthest_front;  // of buildings, beyond the kerb
+  double shortest_house, longest_house;
+  double one_storey_more, two_storeys_more;  // chances of a building's storeys above the least
+  int least_storeys, least_at_corner;
+  double lowest_storey, highest_storey;
+  double gabled;     // chance of a gabled roof; of the others every second has a stair tower
+  double open_lots;  // chance of a garden where a building could be
+  double cross_tree_gap, cross_tree_size;  // along the cross streets: mean distance, mean size
+  double corner_tree_size;
+
+  double kerb() const { return rows.back().from_m + kBayDepth; }
   static constexpr double kBayDepth = 5.0;
   static constexpr double kBayWidth = 2.5;
 
+  // A large car park between tall buildings, as the thesis': most walls are 25 to 40 m away, so that a scan
+  // keeps 8,000 to 9,500 points at the thesis' reduction to half a metre, as it reports.
+  static const QuarterStyle& carPark();
+  // Streets with bays on both sides and buildings of one to three storeys behind them.
+  static const QuarterStyle& streets();
+};
+
+// Main streets run along v, cross streets along u. Lane centres lie at u = k * pitch_u and v = l * pitch_v;
+// block (k, l) is the rectangle from crossing (k, l) to (k+1, l+1).
+struct StreetGrid {
   std::uint64_t seed = 1;
-  Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();  // crossing (0, 0) in the site frame
-  double angle_rad = 0.0;                              // of the main streets against +y, left positive
+  const QuarterStyle* style = &QuarterStyle::streets();  // one of QuarterStyle's, which live for ever
+  Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();    // crossing (0, 0) in the site frame
+  double angle_rad = 0.0;                                // of the main streets against +y, left positive
 
   Eigen::Vector2d site(double u_m, double v_m) const;
   Eigen::Vector2d grid(const Eigen::Vector2d& site_m) const;  // (u, v)

@@ -5,30 +5,44 @@
 
 #include <gtest/gtest.h>
 
+#include "core/scan/reduction.h"
 #include "core/world/experiment.h"
 
 namespace tiltmap {
 namespace {
 
-void expectEnoughCells(ExperimentId id, std::uint64_t seed, int stops) {
-  const auto scans = simulateExperiment(id, seed, stops, 2).value();
-  for (const SimulatedStop& stop : scans) {
-    EXPECT_GE(stop.scan.image->validCells(), 20000U) << stop.scan.source << " " << stop.scan.name;
-    EXPECT_LE(stop.scan.image->validCells(), 31000U) << stop.scan.source << " " << stop.scan.name;
+void expectEnoughCells(const SimulatedStop& stop) {
+  EXPECT_GE(stop.scan.image->validCells(), 20000U) << stop.scan.source << " " << stop.scan.name;
+  EXPECT_LE(stop.scan.image->validCells(), 31000U) << stop.scan.source << " " << stop.scan.name;
+}
+
+// The thesis' experiments: 8,000 to 9,500 points a scan were left at half a metre.
+void expectThesisScans(ExperimentId id) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const auto stops = simulateExperiment(id, seed, 0, 2).value();
+    for (const SimulatedStop& stop : stops) {
+      expectEnoughCells(stop);
+      const Scan& scan = stop.scan;
+      const auto kept = reducedAlongLines(*scan.image, cellPoints(*scan.image, scan.geometry), {}, 0.5);
+      EXPECT_GE(kept.size(), 8000U) << scan.source << " " << scan.name;
+      EXPECT_LE(kept.size(), 9500U) << scan.source << " " << scan.name;
+    }
   }
 }
 
-TEST(ScanQuality, ValidCellsExp1) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) expectEnoughCells(ExperimentId::Exp1, seed, 0);
+TEST(ScanQuality, PointsOfExp1) {
+  expectThesisScans(ExperimentId::Exp1);
 }
-TEST(ScanQuality, ValidCellsExp2Fixed) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) expectEnoughCells(ExperimentId::Exp2Fixed, seed, 0);
+TEST(ScanQuality, PointsOfExp2Fixed) {
+  expectThesisScans(ExperimentId::Exp2Fixed);
 }
 TEST(ScanQuality, ValidCellsLoop) {
-  expectEnoughCells(ExperimentId::Loop, 1, 0);
+  const auto stops = simulateExperiment(ExperimentId::Loop, 1, 0, 2).value();
+  for (const SimulatedStop& stop : stops) expectEnoughCells(stop);
 }
 TEST(ScanQuality, ValidCellsSurvey) {
-  expectEnoughCells(ExperimentId::Survey, 1, 20);
+  const auto drive = Experiment::make(ExperimentId::Survey, 1, 100).value();
+  for (int stop = 0; stop < drive.stops(); stop += 6) expectEnoughCells(drive.simulate(stop, 2).value());
 }
 
 // Where points of one scan fall on smooth parts of the other's matrix, how far are they from its plane there,
@@ -100,7 +114,7 @@ TEST(ScanQuality, NeighboursOverlap) {
   for (std::size_t i = 0; i + 1 < scans.size(); ++i) {
     const Pose truth = scans[i].truth.inverse() * scans[i + 1].truth;
     const double overlap = fitOf(scans[i].scan, scans[i + 1].scan, truth).overlap;
-    EXPECT_GT(overlap, i == 9 ? 0.2 : 0.4) << "stops " << i << " and " << i + 1;
+    EXPECT_GT(overlap, i == 9 ? 0.2 : 0.35) << "stops " << i << " and " << i + 1;
   }
 }
 

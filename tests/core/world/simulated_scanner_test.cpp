@@ -109,7 +109,7 @@ TEST(SimulatedScanner, CodesTellNothingFromFarAndDark) {
       ++nothing[echo.code];
     const auto far_line = castLine(wallAt(83.0, 0.99), Pose(), {}, still(0.0), 0.0, RandomStream(seed),
                                    {.sensitivity_m = 60.0});
-    const auto dark_line = castLine(wallAt(40.0, 0.1), Pose(), {}, still(0.0), 0.0, RandomStream(seed));
+    const auto dark_line = castLine(wallAt(60.0, 0.1), Pose(), {}, still(0.0), 0.0, RandomStream(seed));
     for (std::size_t j = 170; j < 190; ++j) {
       ++far[far_line[j].code];
       ++dark[dark_line[j].code];
@@ -121,8 +121,8 @@ TEST(SimulatedScanner, CodesTellNothingFromFarAndDark) {
   EXPECT_EQ(far[cell_code::kLmsFirst], 80);
   EXPECT_EQ(dark[cell_code::kMeasured], 0);
   EXPECT_EQ(dark[cell_code::kLmsFirst], 0);
-  // 10 % is seen to 30 m.
-  for (const Echo& echo : castLine(wallAt(25.0, 0.11), Pose(), {}, still(0.0), 0.0, RandomStream(1)))
+  // 10 % is seen to 42 m.
+  for (const Echo& echo : castLine(wallAt(36.0, 0.11), Pose(), {}, still(0.0), 0.0, RandomStream(1)))
     if (echo.code == cell_code::kMeasured) ++dark[cell_code::kMeasured];
   EXPECT_GT(dark[cell_code::kMeasured], 20);
 }
