@@ -158,7 +158,7 @@ void DepthImagePanel::buildBar() {
     made->setAutoRaise(true);
     return made;
   };
-  two_ = button("depth-two", "Two", "Two images of the scan side by side", true);
+  two_ = button("depth-two", "Side by side", "Two images of the scan side by side", true);
   two_->setChecked(preferences.text("depth/two", "0") == "1");
   connect(two_, &QToolButton::toggled, this, &DepthImagePanel::showTwo);
   lock_ = button("depth-lock", "Lock range", "Keep the ends of the colour bar from scan to scan", true);

@@ -151,7 +151,7 @@ void DepthView::paintAxes(QPainter& painter, const QRectF& seen, const QRectF& a
   const auto [x_low, x_high] =
       span(image_->azimuth, image_->columns, (seen.left() - all.left()) / all.width(),
            (seen.right() - all.left()) / all.width(), image_->columnsTurned());
-  for (const double value : axisTicks(x_low, x_high, std::max(2, static_cast<int>(seen.width() / 60.0)))) {
+  for (const double value : axisTicks(x_low, x_high, std::max(2, static_cast<int>(seen.width() / 44.0)))) {
     const double x =
         all.left() + share(image_->azimuth, image_->columns, value, image_->columnsTurned()) * all.width();
     painter.drawLine(QPointF(x, seen.bottom() + 1), QPointF(x, seen.bottom() + 5));
@@ -297,6 +297,12 @@ void DepthView::keyPressEvent(QKeyEvent* event) {
     default:
       QWidget::keyPressEvent(event);
   }
+}
+
+bool DepthView::event(QEvent* event) {
+  // The dock's tooltip would lie over the cells; what is under the pointer stands in the read-out.
+  if (event->type() == QEvent::ToolTip) return true;
+  return QWidget::event(event);
 }
 
 void DepthView::leaveEvent(QEvent* event) {

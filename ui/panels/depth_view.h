@@ -56,6 +56,7 @@ class DepthView : public QWidget {
   void windowChanged(const tiltmap::ui::DepthWindow& window);
 
  protected:
+  bool event(QEvent* event) override;
   void paintEvent(QPaintEvent* event) override;
   void mousePressEvent(QMouseEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;

@@ -76,7 +76,7 @@ bool SceneWidget::event(QEvent* event) {
   if (event->type() == QEvent::ShortcutOverride) {
     const auto* key = static_cast<QKeyEvent*>(event);
     if (!(key->modifiers() & (Qt::ControlModifier | Qt::AltModifier)) &&
-        QString("0245678 9FO+-=").contains(QChar(key->key())) && key->key() < 256)
+        QString("02456789FO+-=").contains(QChar(key->key())) && key->key() < 256)
       event->accept();
     return true;
   }

@@ -254,8 +254,8 @@ std::vector<Vector3d> Scene::Parts::extentPoints(const std::vector<ScanId>& scan
   for (std::size_t axis = 0; axis < 3; ++axis) {
     auto& values = along[axis];
     std::sort(values.begin(), values.end());
-    // What one beam in a hundred hit far away must not make everything else small.
-    const std::size_t cut = values.size() / 100;
+    // What one beam in fifty hit far away must not make everything else small.
+    const std::size_t cut = values.size() / 50;
     low[static_cast<int>(axis)] = values[cut];
     high[static_cast<int>(axis)] = values[values.size() - 1 - cut];
   }

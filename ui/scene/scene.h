@@ -47,7 +47,7 @@ struct SceneSettings {
 };
 
 // How many points are drawn while the camera moves.
-inline constexpr std::size_t kMovingPoints = 60000;
+inline constexpr std::size_t kMovingPoints = 52000;
 
 // On one thread, that of the window it draws in.
 class Scene {
