@@ -46,7 +46,7 @@ RegistrationSettings jointRegistrationSettings() {
   s.min_translation_m = 1e-4;
   s.min_rotation_rad = 1e-5;
   s.min_overlap = 0.2;
-  s.min_agreement = 0.3;
+  s.min_agreement = 0.5;
   return s;
 }
 
