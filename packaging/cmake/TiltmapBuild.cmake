@@ -54,5 +54,6 @@ function(tiltmap_add_tests name)
   target_compile_definitions(${name} PRIVATE TILTMAP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/bin)
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
-    PROPERTIES TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT "TILTMAP_PROGRAM=$<TARGET_FILE:tiltmap>")
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT
+      "TILTMAP_PROGRAM=$<TARGET_FILE:tiltmap>;LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/lsan.supp:print_suppressions=0")
 endfunction()
