@@ -15,6 +15,7 @@ keep_inside_the_tree() {
   export TMPDIR="$root/build/tmp"
   export CCACHE_DIR="${CCACHE_DIR:-$root/build/ccache}"
   export XDG_CACHE_HOME="$root/build/home/cache" XDG_CONFIG_HOME="$root/build/home/config" XDG_DATA_HOME="$root/build/home/data"
+  mkdir -p "$XDG_CACHE_HOME" "$XDG_CONFIG_HOME" "$XDG_DATA_HOME"
 }
 
 package_names() { sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$@"; }

@@ -2,6 +2,7 @@
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
+#include <cstdlib>
 #include <string>
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkNew.h>
@@ -60,6 +61,8 @@ struct OffscreenWindow::Parts {
     const auto platform_display =
         reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
     if (!platform_display) return noContext("EGL here cannot work without a display");
+    // A picture needs no shaders kept on disk, and where they cannot be, Mesa complains on the terminal.
+    ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
     display = platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) {
       display = EGL_NO_DISPLAY;
