@@ -6,6 +6,7 @@
 #include "app/cli/command.h"
 #include "core/project/operation.h"
 #include "core/project/project.h"
+#include "core/project/stage_choice.h"
 
 namespace tiltmap::cli {
 
@@ -32,8 +33,5 @@ Status checkOutput(const std::string& file, const std::string& project_path);
 
 // A reading command's snapshot.
 Result<SnapshotPtr> readProject(const std::string& path);
-
-// The stage named, or the latest there is; refuses one that the project has no poses of.
-Result<Stage> stageOrLatest(const ProjectSnapshot& snapshot, const std::string& name);
 
 }  // namespace tiltmap::cli

@@ -6,10 +6,6 @@ namespace tiltmap {
 
 namespace {
 
-// As PreparedScan's own.
-constexpr double kBucket_rad = 3.0 * kDegree;
-constexpr double kWideBucket_rad = 9.0 * kDegree;
-
 void appendMoved(const SurfaceElements& from, const Pose& to_from_from, SurfaceElements& to) {
   const Eigen::Matrix3d rotation = to_from_from.rotation();
   const Eigen::Vector3d shift = to_from_from.translation();
@@ -40,14 +36,7 @@ PreparedScanPtr metascan(std::span<const PreparedScanPtr> scans, std::span<const
     appendMoved(scans[index]->elements, frame_from_world * world_from_scan[index], result->elements);
     result->raw_points += scans[index]->raw_points;
   }
-  if (!result->elements.empty()) {
-    if (settings.pair_choice == PairChoice::Projective) {
-      result->directions.emplace(result->elements.position, kBucket_rad);
-      result->wide_directions.emplace(result->elements.position, kWideBucket_rad);
-    } else {
-      result->tree.emplace(result->elements.position);
-    }
-  }
+  addSearch(settings, *result);
   return result;
 }
 

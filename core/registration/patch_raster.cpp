@@ -1,6 +1,7 @@
 #include "core/registration/patch_raster.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 

@@ -1,7 +1,6 @@
 // Which plane patch is seen in which direction from the scanner: one look-up instead of a search.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -47,7 +46,6 @@ class PatchRaster {
  private:
   static constexpr int kRows = 144;    // about the x axis, 2.5 deg each, all round
   static constexpr int kColumns = 60;  // from the x axis, 3 deg each
-  static constexpr int kTable = 2048;
   bool place(const Eigen::Vector3d& p, int& row, int& column) const;
 
   std::vector<std::uint32_t> cell_;

@@ -105,16 +105,20 @@ void derive(const RangeImage& image, const ScannerGeometry& geometry, const Regi
     prepared.elements = settings.reduction == Reduction::Patches ? cubePatches(image, points, settings)
                                                                  : pointElements(image, points, settings);
   }
+  addSearch(settings, prepared);
+}
+
+}  // namespace
+
+void addSearch(const RegistrationSettings& settings, PreparedScan& prepared) {
   if (prepared.elements.empty()) return;
-  if (!projective)
+  if (settings.pair_choice != PairChoice::Projective) {
     prepared.tree.emplace(prepared.elements.position);
-  else if (!prepared.raster) {
+  } else if (!prepared.raster) {
     prepared.directions.emplace(prepared.elements.position, kBucket_rad);
     prepared.wide_directions.emplace(prepared.elements.position, kWideBucket_rad);
   }
 }
-
-}  // namespace
 
 PreparedScanPtr prepare(const Scan& scan, const RegistrationSettings& settings) {
   if (const Status status = checkSettings(settings); !status)

@@ -32,6 +32,10 @@ struct PreparedScan {
 };
 using PreparedScanPtr = std::shared_ptr<const PreparedScan>;
 
+// Adds what the pair choice finds the elements by: the directions for the projective one (unless there is a
+// raster), the tree for the others. Nothing where there are no elements.
+void addSearch(const RegistrationSettings& settings, PreparedScan& prepared);
+
 // Filter, normals, reduction or patches, and the search structure, in that order. Throws
 // std::invalid_argument where checkSettings refuses the settings.
 PreparedScanPtr prepare(const Scan& scan, const RegistrationSettings& settings);

@@ -8,6 +8,7 @@
 #include "core/base/text.h"
 #include "core/io/cloud_writer.h"
 #include "core/project/operations/index_list.h"
+#include "core/project/stage_choice.h"
 #include "core/scan/reduction.h"
 
 namespace tiltmap {
@@ -57,15 +58,6 @@ const ParameterTable<ExportSettings>& exportTable() {
     return t;
   }();
   return table;
-}
-
-Result<Stage> stageOf(const ProjectSnapshot& snapshot, const std::string& name) {
-  if (name.empty()) return snapshot.latestStage();
-  auto stage = parseStage(name);
-  if (stage && !snapshot.hasStage(*stage))
-    return fail("the project has no poses of stage " + name, snapshot.path().string(),
-                "run the operation that makes it first, or choose another stage (`tiltmap info` lists them)");
-  return stage;
 }
 
 namespace fs = std::filesystem;
@@ -155,14 +147,14 @@ class ExportOperation : public SettingsOperation<ExportSettings> {
       return fail("the project has no scans to export", snapshot.path().string(),
                   "import, simulate or capture some first");
     if (auto format = cloudFormatOf(settings.file); !format) return fail(format.error());
-    if (auto stage = stageOf(snapshot, settings.stage); !stage) return fail(stage.error());
+    if (auto stage = stageOrLatest(snapshot, settings.stage); !stage) return fail(stage.error());
     if (auto list = selected(snapshot, settings); !list) return fail(list.error());
     return {};
   }
 
   Result<OperationResult> runSettings(const SnapshotPtr& snapshot, const ExportSettings& settings,
                                       const JobControl& control) const override {
-    const auto stage = stageOf(*snapshot, settings.stage);
+    const auto stage = stageOrLatest(*snapshot, settings.stage);
     const auto list = selected(*snapshot, settings);
     if (!stage) return fail(stage.error());
     if (!list) return fail(list.error());
