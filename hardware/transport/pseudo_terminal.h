@@ -1,0 +1,44 @@
+// The instrument's end of a pseudo terminal: what any serial program may open instead of a port.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "hardware/transport/byte_channel.h"
+
+namespace tiltmap {
+
+// A pseudo terminal neither paces bytes nor garbles them at a wrong rate: the emulator sends each byte at its
+// instant and asks peerLine() what the client has set. The terminal stays while clients come and go.
+class PseudoTerminal : public DeviceWire {
+ public:
+  // `link`: a symbolic link to make to it (an old link there is replaced, a file is not); empty: none.
+  static Result<std::unique_ptr<PseudoTerminal>> open(RealClock& clock, const std::string& link = {});
+  ~PseudoTerminal() override;
+  PseudoTerminal(const PseudoTerminal&) = delete;
+  PseudoTerminal& operator=(const PseudoTerminal&) = delete;
+
+  // "/dev/pts/5": what a client opens.
+  const std::string& name() const override { return name_; }
+  Result<std::size_t> read(std::span<Byte> buffer, Instant deadline) override;
+  // What a client leaves unread beyond the terminal's buffer is lost, as on a wire.
+  Status write(std::span<const Byte> bytes) override;
+  Status setLine(const LineSettings& line) override;
+  LineSettings line() const override { return line_; }
+  ChannelState state() const override { return master_ < 0 ? ChannelState::Closed : ChannelState::Open; }
+  // Also removes the link. A client finds its port gone.
+  void close() override;
+  LineSettings peerLine() const override;
+  Instant nextArrival() const override { return kNever; }
+  int descriptor() const override { return master_; }
+
+ private:
+  PseudoTerminal(RealClock& clock) : clock_(clock) {}
+  RealClock& clock_;
+  int master_ = -1;
+  int slave_ = -1;  // kept open, so that the terminal outlives a client that leaves
+  std::string name_, link_;
+  LineSettings line_;
+};
+
+}  // namespace tiltmap
