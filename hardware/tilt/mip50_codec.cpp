@@ -12,7 +12,7 @@ namespace {
 
 struct VerbPattern {
   Mip50Verb verb;
-  std::string Mip50Table::* pattern;
+  std::string Mip50Table::*pattern;
 };
 constexpr std::array<VerbPattern, 11> kPatterns{{
     {Mip50Verb::ClearError, &Mip50Table::clear_error},
@@ -45,9 +45,8 @@ std::string filled(std::string text, std::string_view part, const std::string& n
 // The digits (and sign, point) at the start of the text, taken from it.
 std::string_view takeNumber(std::string_view& text) {
   std::size_t size = 0;
-  while (size < text.size() &&
-         (std::string_view("0123456789.").find(text[size]) != std::string_view::npos ||
-          (size == 0 && (text[size] == '-' || text[size] == '+'))))
+  while (size < text.size() && (std::string_view("0123456789.").find(text[size]) != std::string_view::npos ||
+                                (size == 0 && (text[size] == '-' || text[size] == '+'))))
     ++size;
   const std::string_view number = text.substr(0, size);
   text.remove_prefix(size);

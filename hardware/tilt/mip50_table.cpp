@@ -97,11 +97,21 @@ std::optional<std::string> unescaped(std::string_view text) {
     }
     if (++i == text.size()) return std::nullopt;
     switch (text[i]) {
-      case 'r': result += '\r'; break;
-      case 'n': result += '\n'; break;
-      case 't': result += '\t'; break;
-      case 's': result += ' '; break;
-      case '\\': result += '\\'; break;
+      case 'r':
+        result += '\r';
+        break;
+      case 'n':
+        result += '\n';
+        break;
+      case 't':
+        result += '\t';
+        break;
+      case 's':
+        result += ' ';
+        break;
+      case '\\':
+        result += '\\';
+        break;
       case 'x': {
         if (i + 2 >= text.size()) return std::nullopt;
         const int high = hexDigit(text[i + 1]), low = hexDigit(text[i + 2]);
@@ -110,7 +120,8 @@ std::optional<std::string> unescaped(std::string_view text) {
         i += 2;
         break;
       }
-      default: return std::nullopt;
+      default:
+        return std::nullopt;
     }
   }
   return result;
@@ -168,13 +179,15 @@ Status setLine(Mip50Table& table, std::string_view name, std::string_view value,
     const auto number = parseInteger(name.substr(prefix.size()));
     const auto text = unescaped(value);
     if (!number || *number < 0 || *number > 1'000'000 || !text)
-      return fail("\"" + printable(name) + "\" does not name a number", where, "write for example refusal.180");
+      return fail("\"" + printable(name) + "\" does not name a number", where,
+                  "write for example refusal.180");
     (*texts)[static_cast<int>(*number)] = *text;
     return {};
   }
   const auto nearest = nearestName(name, names());
-  return fail("there is no entry \"" + printable(name) + "\"", where,
-              nearest ? "did you mean " + *nearest + "?" : "the manual's page on capturing lists the entries");
+  return fail(
+      "there is no entry \"" + printable(name) + "\"", where,
+      nearest ? "did you mean " + *nearest + "?" : "the manual's page on capturing lists the entries");
 }
 
 }  // namespace
@@ -195,7 +208,8 @@ Result<Mip50Table> parseMip50Table(std::string_view text, const std::string& whe
     if (equals == std::string_view::npos)
       return fail("\"" + printable(line) + "\" is not of the form name = value", here,
                   "write name = value, or # before a remark");
-    if (Status status = setLine(table, trimmed(line.substr(0, equals)), trimmed(line.substr(equals + 1)), here);
+    if (Status status =
+            setLine(table, trimmed(line.substr(0, equals)), trimmed(line.substr(equals + 1)), here);
         !status)
       return fail(status.error());
   }
@@ -213,8 +227,10 @@ Result<Mip50Table> readMip50Table(const std::filesystem::path& file) {
 
 std::string mip50TableText(const Mip50Table& table) {
   std::string text =
-      "# What is sent to and expected from a maxon MIP 50 in its ASCII mode. {axis}, {value} and {parameter}\n"
-      "# stand for numbers; \\r, \\n, \\t, \\s (blank) and \\xNN for characters. \"seen working\" is what public\n"
+      "# What is sent to and expected from a maxon MIP 50 in its ASCII mode. {axis}, {value} and "
+      "{parameter}\n"
+      "# stand for numbers; \\r, \\n, \\t, \\s (blank) and \\xNN for characters. \"seen working\" is what "
+      "public\n"
       "# software is known to do with real controllers; nothing here has been tried by us.\n";
   for (const Line& line : lines()) {
     std::string value;

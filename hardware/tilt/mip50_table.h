@@ -73,7 +73,8 @@ struct Mip50Table {
   bool operator==(const Mip50Table&) const = default;
 };
 
-// `name = value` a line; "#" begins a remark; blanks around a value are not part of it, \r, \n, \t, \s (blank),
+// `name = value` a line; "#" begins a remark; blanks around a value are not part of it, \r, \n, \t, \s
+// (blank),
 // \\ and \xNN stand for characters; refusal.N and error.N give a number its meaning. Names that are not there
 // keep their built-in value. Refuses unknown names (naming the nearest), numbers that are none, and a command
 // without what it needs ({axis}, {value}, {parameter}).

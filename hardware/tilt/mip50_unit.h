@@ -17,7 +17,8 @@ namespace tiltmap {
 class Mip50Unit : public TiltUnit {
  public:
   // The clock must outlive the unit. Throws std::invalid_argument for a drive that check() refuses.
-  Mip50Unit(std::unique_ptr<ByteChannel> channel, Clock& clock, TiltDrive drive, Mip50Table table = {}, int axis = 1);
+  Mip50Unit(std::unique_ptr<ByteChannel> channel, Clock& clock, TiltDrive drive, Mip50Table table = {},
+            int axis = 1);
   ~Mip50Unit() override;
 
   const std::string& name() const override { return name_; }
@@ -38,7 +39,7 @@ class Mip50Unit : public TiltUnit {
   // One request and what it is waiting for.
   struct Request {
     Mip50Command command;
-    double limit_s = 1.0;  // until it is answered
+    double limit_s = 1.0;   // until it is answered
     int value_number = -1;  // M#number must come before the acknowledge; -1: none
   };
   enum class Phase { Idle, Moving, Reading, Checking, Still, Lost };
@@ -78,8 +79,8 @@ class Mip50Unit : public TiltUnit {
   bool mode_known_ = false;  // line ends may be sent: in the text menu one would stop the motor
   int tries_ = 0;
   Instant deadline_{}, quiet_until_{};
-  std::optional<std::int64_t> value_;       // of the request under way
-  std::int64_t last_value_ = 0;             // of the one that was completed last
+  std::optional<std::int64_t> value_;  // of the request under way
+  std::int64_t last_value_ = 0;        // of the one that was completed last
   Instant move_deadline_{};
 
   Phase phase_ = Phase::Idle;
@@ -87,8 +88,8 @@ class Mip50Unit : public TiltUnit {
   std::int64_t position_ = 0;  // read back last
   std::int64_t target_ = 0;
   int attempts_ = 0;
-  bool irregular_ = false;     // an answer was late, lost or garbled: look twice
-  Instant ended_{};            // when the last segment was acknowledged
+  bool irregular_ = false;  // an answer was late, lost or garbled: look twice
+  Instant ended_{};         // when the last segment was acknowledged
   TiltReading reading_;
 };
 

@@ -42,8 +42,8 @@ Status TiltDrive::check() const {
   const auto refuse = [](const std::string& what, const std::string& remedy) {
     return fail(what, "settings of the tilt unit", remedy);
   };
-  for (const double number : {counts_per_turn, minimum_rad, maximum_rad, speed, acceleration, settle_s, tolerance_rad,
-                              approach_rad, longest_segment_s})
+  for (const double number : {counts_per_turn, minimum_rad, maximum_rad, speed, acceleration, settle_s,
+                              tolerance_rad, approach_rad, longest_segment_s})
     if (!std::isfinite(number)) return refuse("a setting is not a number", "give numbers");
   if (std::abs(counts_per_turn) < 360.0)
     return refuse("an encoder of " + shortestReal(counts_per_turn) + " counts per turn is too coarse",
@@ -69,12 +69,14 @@ std::vector<std::int64_t> segmentsOf(const TiltDrive& drive, std::int64_t from, 
   std::vector<std::int64_t> stations;
   const auto leg = [&](std::int64_t begin, std::int64_t end) {
     const double way = static_cast<double>(end - begin);
-    const auto parts = static_cast<std::int64_t>(std::max(1.0, std::ceil(std::abs(way) / drive.longestSegment())));
+    const auto parts =
+        static_cast<std::int64_t>(std::max(1.0, std::ceil(std::abs(way) / drive.longestSegment())));
     for (std::int64_t i = 1; i <= parts; ++i)
       stations.push_back(begin + std::llround(way * static_cast<double>(i) / static_cast<double>(parts)));
   };
   if (drive.angleOf(from) > drive.angleOf(to)) {
-    const double below = std::max(drive.angleOf(to) - drive.approach_rad, std::min(drive.minimum_rad, drive.angleOf(to)));
+    const double below =
+        std::max(drive.angleOf(to) - drive.approach_rad, std::min(drive.minimum_rad, drive.angleOf(to)));
     const std::int64_t turn = drive.countsOf(below);
     if (turn != to) {
       leg(from, turn);

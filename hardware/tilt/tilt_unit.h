@@ -45,16 +45,16 @@ class TiltUnit {
 
 // The drive between encoder and scanner: thesis 3.2 has a 1526:1 gear behind a motor of 2048 counts a turn.
 struct TiltDrive {
-  double counts_per_turn = 3125248.0;  // of the output; negative where counts grow downwards
-  std::int64_t level_count = 0;        // where the scanner looks straight ahead, counted from home
+  double counts_per_turn = 3125248.0;        // of the output; negative where counts grow downwards
+  std::int64_t level_count = 0;              // where the scanner looks straight ahead, counted from home
   double minimum_rad = -0.7853981633974483;  // -45 deg
   double maximum_rad = 1.0471975511965976;   // 60 deg
   double speed = 120.0;                      // counts/ms; a 48 V motor on 24 V reaches about this
   double acceleration = 2.0;                 // counts/ms2
   double settle_s = 0.05;
-  double tolerance_rad = 0.0003;      // between where it should stand and where it does
-  double approach_rad = 0.035;        // how far below a target a way down ends first: more than the gear's play
-  double longest_segment_s = 0.2;     // a move is a chain of such, so that stopping always takes effect
+  double tolerance_rad = 0.0003;   // between where it should stand and where it does
+  double approach_rad = 0.035;     // how far below a target a way down ends first: more than the gear's play
+  double longest_segment_s = 0.2;  // a move is a chain of such, so that stopping always takes effect
 
   double angleOf(std::int64_t counts) const;
   std::int64_t countsOf(double angle_rad) const;  // nearest

@@ -1,0 +1,434 @@
+#include "hardware/tilt/mip50_unit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "core/base/text.h"
+#include "core/geometry/pose.h"
+
+namespace tiltmap {
+
+namespace {
+
+// How long a controller that is still busy, or a line that is out of step, is left alone.
+constexpr double kPause = 0.05;
+constexpr double kQuiet = 0.15;
+constexpr int kAttempts = 3;  // to bring the tilt where it should stand
+// Refusals by their numbers (mip50_table.h): the sender's fault on a bad line, and "not yet".
+constexpr std::array<int, 4> kGarbled{171, 172, 173, 174};
+constexpr std::array<int, 2> kNotYet{177, 178};
+
+bool among(std::span<const int> numbers, int number) {
+  return std::ranges::find(numbers, number) != numbers.end();
+}
+
+std::string degrees(double angle_rad) {
+  return fixedReal(angle_rad / kDegree, 2) + " deg";
+}
+
+}  // namespace
+
+Mip50Unit::Mip50Unit(std::unique_ptr<ByteChannel> channel, Clock& clock, TiltDrive drive, Mip50Table table,
+                     int axis)
+    : channel_(std::move(channel)),
+      clock_(clock),
+      drive_(drive),
+      table_(std::move(table)),
+      axis_(axis),
+      name_("MIP 50 at " + channel_->name()),
+      reader_(table_) {
+  if (Status status = drive_.check(); !status)
+    throw std::invalid_argument("Mip50Unit: " + status.error().what);
+}
+
+Mip50Unit::~Mip50Unit() = default;
+
+Mip50Unit::Request Mip50Unit::request(Mip50Verb verb, double value) const {
+  return {{verb, axis_, value, 0}, table_.answer_s, -1};
+}
+Mip50Unit::Request Mip50Unit::positionRequest() const {
+  return {{Mip50Verb::ReadPosition, axis_, 0.0, 0}, table_.answer_s, table_.position_number};
+}
+Mip50Unit::Request Mip50Unit::moveRequest(std::int64_t from, std::int64_t to) const {
+  const double duration = drive_.moveDuration(static_cast<double>(to - from));
+  return {{Mip50Verb::MoveAbsolute, axis_, static_cast<double>(to), 0},
+          table_.move_factor * duration + table_.move_extra_s,
+          -1};
+}
+
+std::string Mip50Unit::troubleOf(int number, const std::map<int, std::string>& texts) const {
+  const auto found = texts.find(number);
+  return found == texts.end() ? "number " + std::to_string(number)
+                              : found->second + " (number " + std::to_string(number) + ")";
+}
+
+Error Mip50Unit::silent() const {
+  return {"the tilt controller does not answer", name_,
+          "check its power, the cable (one crossing of wires 2 and 3) and its rate (" +
+              std::to_string(channel_->line().baud) +
+              " Bd now; 19200 as delivered); then go on with the capture"};
+}
+
+Status Mip50Unit::lost(Error error) {
+  phase_ = Phase::Lost;
+  ready_ = false;
+  sent_ = false;
+  script_.clear();
+  return fail(std::move(error));
+}
+
+Status Mip50Unit::send() {
+  std::string text = encodeCommand(table_, script_.front().command);
+  if (text.empty())
+    return lost({"the table of the tilt controller lacks a command that is needed", name_,
+                 "complete the table; tiltmap's own has all of them"});
+  // In the text menu a carriage return is an emergency stop.
+  if (mode_known_) text += table_.command_end;
+  value_.reset();
+  answers_.clear();
+  sent_ = true;
+  deadline_ = clock_.now() + channel_->line().wireTime(text.size()) + durationOf(script_.front().limit_s);
+  if (Status status = channel_->write({reinterpret_cast<const Byte*>(text.data()), text.size()}); !status)
+    return lost(status.error());
+  return {};
+}
+
+Status Mip50Unit::take() {
+  std::array<Byte, 256> buffer;
+  while (true) {
+    const auto count = channel_->read(buffer, clock_.now());
+    if (!count) return lost(count.error());
+    if (*count == 0) return {};
+    std::vector<Mip50Answer> found;
+    reader_.take({reinterpret_cast<const char*>(buffer.data()), *count}, found);
+    for (Mip50Answer& answer : found) {
+      // Whatever it was in the middle of: a controller that starts anew does not know where it stands.
+      if (const auto* banner = std::get_if<Mip50Banner>(&answer); banner && ready_)
+        return lost({banner->entered
+                         ? "the tilt controller has been switched off and on and no longer knows its position"
+                         : "the tilt controller has left its command mode",
+                     name_, "check its supply; going on with the capture searches home again"});
+      answers_.push_back(std::move(answer));
+    }
+  }
+}
+
+void Mip50Unit::next() {
+  if (script_.front().command.verb == Mip50Verb::MoveAbsolute) ended_ = clock_.now();
+  if (value_) last_value_ = *value_;
+  if (tries_ > 0) {
+    // An answer to an earlier try may still come and must not be taken for the next one's.
+    irregular_ = true;
+    quiet_until_ = clock_.now() + durationOf(kQuiet);
+  }
+  tries_ = 0;
+  sent_ = false;
+  script_.pop_front();
+}
+
+Status Mip50Unit::refused(const Mip50Refusal& refusal) {
+  sent_ = false;
+  irregular_ = true;
+  if (among(kNotYet, refusal.number) && clock_.now() < move_deadline_) {
+    quiet_until_ = clock_.now() + durationOf(kPause);
+    return {};
+  }
+  const std::string trouble = troubleOf(refusal.number, table_.refusals);
+  if (among(kGarbled, refusal.number) && ++tries_ <= table_.repeats) {
+    quiet_until_ = clock_.now() + durationOf(kPause);
+    return {};
+  }
+  if (among(kGarbled, refusal.number))
+    return lost({"the tilt controller does not understand what it is sent: " + trouble, name_,
+                 "check the cable and the controller's table of commands"});
+  return lost({"the tilt controller refuses to move: " + trouble, name_,
+               "see that Enable is on, nothing presses a limit switch or STOP and nothing blocks the tilt; "
+               "going on with the capture clears the error and searches home again"});
+}
+
+Result<bool> Mip50Unit::answered(const Mip50Answer& answer) {
+  const Request& current = script_.front();
+  if (std::holds_alternative<Mip50Done>(answer)) {
+    const bool complete = current.value_number != table_.position_number || value_;
+    if (!complete) irregular_ = true;  // of an earlier request
+    return complete;
+  }
+  if (const auto* value = std::get_if<Mip50Value>(&answer)) {
+    if (value->number == current.value_number && value->values.size() >= 2 && value->values.front() == axis_)
+      value_ = value->values.back();
+    return false;
+  }
+  if (const auto* refusal = std::get_if<Mip50Refusal>(&answer)) {
+    if (Status status = refused(*refusal); !status) return fail(status.error());
+    return false;
+  }
+  if (std::holds_alternative<Mip50Noise>(answer)) irregular_ = true;
+  return false;
+}
+
+// A move whose acknowledge did not come may well have been made: the position that is read next tells.
+Status Mip50Unit::overdue() {
+  irregular_ = true;
+  if (script_.front().command.verb == Mip50Verb::MoveAbsolute) {
+    next();
+    return {};
+  }
+  if (++tries_ > table_.repeats) return lost(silent());
+  sent_ = false;
+  quiet_until_ = clock_.now() + durationOf(kPause);
+  return {};
+}
+
+// True when the script is through; false while it waits.
+Result<bool> Mip50Unit::advance() {
+  while (true) {
+    if (Status status = take(); !status) return fail(status.error());
+    if (clock_.now() < quiet_until_) {
+      answers_.clear();
+      return false;
+    }
+    if (script_.empty()) return true;
+    if (!sent_) {
+      if (Status status = send(); !status) return fail(status.error());
+    }
+    if (answers_.empty()) {
+      if (clock_.now() < deadline_) return false;
+      if (Status status = overdue(); !status) return fail(status.error());
+      continue;
+    }
+    const Mip50Answer answer = std::move(answers_.front());
+    answers_.pop_front();
+    const auto done = answered(answer);
+    if (!done) return fail(done.error());
+    if (*done) next();
+  }
+}
+
+Status Mip50Unit::runScript(const JobControl* job) {
+  while (true) {
+    const auto through = advance();
+    if (!through) return fail(through.error());
+    if (*through) return {};
+    if (job && job->stopRequested()) {
+      // What has been sent is still going to be answered; prepare() begins with a clean slate.
+      script_.clear();
+      sent_ = false;
+      return fail(kCancelled, name_, "start it again");
+    }
+    clock_.sleepFor(durationOf(0.002));
+  }
+}
+
+// Sends raw bytes and waits half a second for an answer (for the banner where that is asked for).
+Result<bool> Mip50Unit::probe(const JobControl& job, std::string_view bytes, bool banner) {
+  answers_.clear();
+  if (Status status = channel_->write({reinterpret_cast<const Byte*>(bytes.data()), bytes.size()}); !status)
+    return fail(status.error());
+  const Instant end = clock_.now() + durationOf(0.5);
+  while (clock_.now() < end) {
+    if (job.stopRequested()) return fail(kCancelled, name_, "start it again");
+    clock_.sleepFor(durationOf(0.002));
+    if (Status status = take(); !status) return fail(status.error());
+    for (const Mip50Answer& answer : answers_) {
+      if (banner && std::holds_alternative<Mip50Banner>(answer)) return true;
+      if (!banner &&
+          (std::holds_alternative<Mip50Value>(answer) || std::holds_alternative<Mip50Refusal>(answer)))
+        return true;
+    }
+  }
+  return false;
+}
+
+Status Mip50Unit::findAsciiMode(const JobControl& job) {
+  mode_known_ = false;
+  const std::string question = encodeCommand(table_, positionRequest().command);
+  for (int i = 0; i <= table_.repeats; ++i) {
+    auto found = probe(job, question, false);
+    if (!found) return fail(found.error());
+    if (*found) {
+      mode_known_ = true;
+      return {};
+    }
+    if (table_.enter_ascii.empty()) continue;
+    // Perhaps it stands in its text menu.
+    if (auto entered = probe(job, table_.enter_ascii, true); !entered) return fail(entered.error());
+  }
+  return lost(silent());
+}
+
+Status Mip50Unit::home(const JobControl& job) {
+  job.tell(-1.0, "the tilt searches its home position");
+  Request search = request(Mip50Verb::Home);
+  search.limit_s = table_.home_limit_s;
+  move_deadline_ = clock_.now() + durationOf(table_.home_limit_s);
+  script_ = {search, positionRequest()};
+  if (Status status = runScript(&job); !status) return status;
+  position_ = last_value_;
+  const double off =
+      std::abs(static_cast<double>(position_) * 2.0 * std::numbers::pi / drive_.counts_per_turn);
+  if (off > drive_.tolerance_rad)
+    return lost({"the search for home ended at count " + std::to_string(position_) + " instead of 0", name_,
+                 "check the home switch and the controller's parameters 30 to 33 and 38"});
+  return {};
+}
+
+Status Mip50Unit::prepare(const JobControl& job) {
+  if (ready_) return {};
+  reader_.clear();
+  answers_.clear();
+  script_.clear();
+  sent_ = false;
+  tries_ = 0;
+  quiet_until_ = {};
+  if (Status status = channel_->discardInput(); !status) return status;
+  job.tell(-1.0, "looking for the tilt controller");
+  if (Status status = findAsciiMode(job); !status) return status;
+  clock_.sleepFor(durationOf(kPause));
+  // A move or a search for home that a killed program began may still be going on.
+  move_deadline_ = clock_.now() + durationOf(table_.home_limit_s);
+  Request clear = request(Mip50Verb::ClearError);
+  clear.value_number = table_.error_number;
+  last_value_ = 0;
+  script_ = {request(Mip50Verb::RegulationOff), clear};
+  if (Status status = runScript(&job); !status) return status;
+  if (last_value_ != 0)
+    warnings_.push_back("the tilt controller had stored an error: " +
+                        troubleOf(static_cast<int>(last_value_), table_.errors) + "; it has been cleared");
+  script_ = {request(Mip50Verb::Ramp, drive_.acceleration), request(Mip50Verb::Speed, drive_.speed),
+             request(Mip50Verb::RegulationOn)};
+  if (Status status = runScript(&job); !status) return status;
+  if (Status status = home(job); !status) return status;
+  irregular_ = false;
+  attempts_ = 0;
+  phase_ = Phase::Still;
+  ready_ = true;
+  return {};
+}
+
+Status Mip50Unit::checkAngle(double angle_rad) const {
+  if (angle_rad >= drive_.minimum_rad - 1e-9 && angle_rad <= drive_.maximum_rad + 1e-9) return {};
+  return fail(
+      "a tilt of " + degrees(angle_rad) + " lies outside the limits " + degrees(drive_.minimum_rad) + " to " +
+          degrees(drive_.maximum_rad),
+      name_,
+      "choose start, step and lines within them, or give other limits (min, max) with the tilt's address");
+}
+
+Status Mip50Unit::plan() {
+  std::int64_t from = position_;
+  double longest_s = 0.0;
+  for (const std::int64_t station : segmentsOf(drive_, position_, target_)) {
+    script_.push_back(moveRequest(from, station));
+    longest_s += script_.back().limit_s;
+    from = station;
+  }
+  script_.push_back(positionRequest());
+  move_deadline_ = clock_.now() + durationOf(longest_s);
+  phase_ = Phase::Moving;
+  ended_ = clock_.now();
+  return {};
+}
+
+Status Mip50Unit::moveTo(double angle_rad) {
+  if (!ready_) return fail("the tilt is not ready to move", name_, "prepare it first");
+  if (Status status = checkAngle(angle_rad); !status) return status;
+  target_ = drive_.countsOf(angle_rad);
+  attempts_ = 0;
+  irregular_ = false;
+  if (phase_ == Phase::Still) {
+    if (Status status = plan(); !status) return status;
+  } else {
+    // After a stop: what was under way ends first, and then it is seen where that was.
+    if (!script_.empty()) script_.erase(script_.begin() + (sent_ ? 1 : 0), script_.end());
+    script_.push_back(positionRequest());
+    phase_ = Phase::Reading;
+  }
+  return poll().map([](const auto&) {});
+}
+
+// The position has been read: is it the target? True when the tilt stands there for good.
+Result<bool> Mip50Unit::arrived() {
+  const std::int64_t before = position_;
+  position_ = last_value_;
+  if (phase_ == Phase::Reading) return plan().map([] { return false; });
+  const double off = std::abs(drive_.angleOf(position_) - drive_.angleOf(target_));
+  const bool again = phase_ == Phase::Checking;
+  const bool same = again && std::abs(position_ - before) <= 2;
+  if (off <= drive_.tolerance_rad) {
+    if (!irregular_ || same) {
+      reading_ = {drive_.angleOf(position_), position_,
+                  (irregular_ ? clock_.now() : ended_) + durationOf(drive_.settle_s)};
+      phase_ = Phase::Still;
+      return true;
+    }
+  } else if (same || !irregular_) {
+    // It stands, but elsewhere.
+    if (++attempts_ > kAttempts)
+      return fail(lost({"the tilt does not reach " + degrees(drive_.angleOf(target_)) + ": it stands at " +
+                            degrees(drive_.angleOf(position_)),
+                        name_,
+                        "see whether something blocks it and whether the motor has its supply; "
+                        "going on with the capture searches home again"})
+                      .error());
+    irregular_ = true;  // from now on look twice
+    return plan().map([] { return false; });
+  } else if (again && clock_.now() > move_deadline_ + durationOf(table_.move_extra_s)) {
+    return fail(lost({"the tilt does not come to rest", name_,
+                      "see whether something blocks it; going on with the capture searches home again"})
+                    .error());
+  }
+  phase_ = Phase::Checking;
+  quiet_until_ = clock_.now() + durationOf(kPause);
+  script_.push_back(positionRequest());
+  return false;
+}
+
+Result<std::optional<TiltReading>> Mip50Unit::poll() {
+  if (phase_ == Phase::Lost)
+    return fail("the tilt has to be prepared again", name_, "go on with the capture, which does it");
+  while (true) {
+    const auto through = advance();
+    if (!through) return fail(through.error());
+    if (!*through) return std::nullopt;
+    if (phase_ == Phase::Idle) return std::nullopt;
+    if (phase_ == Phase::Still) return reading_;
+    const auto there = arrived();
+    if (!there) return fail(there.error());
+  }
+}
+
+void Mip50Unit::stop() {
+  if (phase_ == Phase::Lost) return;
+  if (!script_.empty()) script_.erase(script_.begin() + (sent_ ? 1 : 0), script_.end());
+  if (phase_ != Phase::Still) phase_ = Phase::Idle;
+}
+
+Status Mip50Unit::release() {
+  if (!ready_) return {};
+  stop();
+  move_deadline_ = clock_.now() + durationOf(table_.move_extra_s);
+  script_.push_back(request(Mip50Verb::RegulationOff));
+  ready_ = false;
+  phase_ = Phase::Idle;
+  return runScript(nullptr);
+}
+
+Result<std::int64_t> Mip50Unit::readParameter(int number) {
+  if (!mode_known_) return fail("the tilt is not ready", name_, "prepare it first");
+  Request read = request(Mip50Verb::ReadParameter);
+  read.command.parameter = number;
+  read.value_number = table_.parameter_number;
+  last_value_ = 0;
+  script_.push_back(read);
+  if (Status status = runScript(nullptr); !status) return fail(status.error());
+  return last_value_;
+}
+
+std::vector<std::string> Mip50Unit::takeWarnings() {
+  return std::exchange(warnings_, {});
+}
+
+}  // namespace tiltmap
