@@ -2,6 +2,7 @@
 // undone.
 #include "app/cli/operation_runner.h"
 #include "core/base/text.h"
+#include "core/products/colour.h"
 #include "core/project/operations/index_list.h"
 
 namespace tiltmap::cli {
@@ -60,6 +61,31 @@ void addNote(CLI::App& app, Chosen& chosen) {
       return editCommand(context, words->project, [&](const SnapshotPtr& snapshot) {
         return snapshot->scanAt(words->scan).map([&](const ScanEntry* scan) {
           return noteEdit(scan->id, words->text);
+        });
+      });
+    };
+  });
+}
+
+void addColour(CLI::App& app, Chosen& chosen) {
+  auto words = std::make_shared<StopWords>();
+  auto* command = addStopCommand(
+      app, "colour", "Give a stop a colour of its own in every view and picture, or take it away", *words);
+  command->add_option("colour", words->text, "Red, green and blue: #ff8800; or default")->required();
+  command->callback([words, &chosen] {
+    chosen.body = [words](Context& context) -> int {
+      return editCommand(context, words->project, [&](const SnapshotPtr& snapshot) -> Result<ProjectEdit> {
+        std::optional<std::uint32_t> colour;
+        if (words->text != "default") {
+          const auto rgb = rgbOfHex(words->text);
+          if (!rgb)
+            return fail("\"" + printable(words->text) + "\" is not a colour", "tiltmap colour",
+                        "write six hexadecimal digits, such as #ff8800, or default");
+          colour =
+              static_cast<std::uint32_t>(rgb->r) << 16 | static_cast<std::uint32_t>(rgb->g) << 8 | rgb->b;
+        }
+        return snapshot->scanAt(words->scan).map([&](const ScanEntry* scan) {
+          return colourEdit(*snapshot, {scan->id}, colour);
         });
       });
     };
@@ -156,6 +182,7 @@ void addRebase(CLI::App& app, Chosen& chosen) {
 void addEdits(CLI::App& app, Chosen& chosen) {
   addRename(app, chosen);
   addNote(app, chosen);
+  addColour(app, chosen);
   addSurvey(app, chosen);
   addDelete(app, chosen);
   addRebase(app, chosen);

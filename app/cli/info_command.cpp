@@ -2,10 +2,15 @@
 #include <cstdio>
 
 #include "app/cli/operation_runner.h"
+#include "core/products/scan_colours.h"
 
 namespace tiltmap::cli {
 
 namespace {
+
+nlohmann::json colourJson(const ScanEntry& scan) {
+  return scan.colour ? nlohmann::json(hexOf(scanColour(scan, 0))) : nlohmann::json(nullptr);
+}
 
 nlohmann::json infoJson(const ProjectSnapshot& snapshot) {
   nlohmann::json info = {{"scans", nlohmann::json::array()},
@@ -21,6 +26,7 @@ nlohmann::json infoJson(const ProjectSnapshot& snapshot) {
                              {"valid", scan.valid_cells},
                              {"source", scan.source},
                              {"note", scan.note},
+                             {"colour", colourJson(scan)},
                              {"photographs", scan.photographs.size()}});
   }
   for (const Link& link : snapshot.links()) {

@@ -1,6 +1,8 @@
 #include "core/products/colour.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -41,6 +43,18 @@ Eigen::Vector3d linearOfOkLab(const Eigen::Vector3d& lab) {
 }
 
 }  // namespace
+
+std::optional<Rgb> rgbOfHex(std::string_view text) {
+  if (text.starts_with('#')) text.remove_prefix(1);
+  if (text.size() != 6) return std::nullopt;
+  std::array<std::uint8_t, 3> channels{};
+  for (std::size_t k = 0; k < channels.size(); ++k) {
+    const std::string_view digits = text.substr(2 * k, 2);
+    const auto [end, error] = std::from_chars(digits.begin(), digits.end(), channels[k], 16);
+    if (error != std::errc() || end != digits.end()) return std::nullopt;
+  }
+  return Rgb{channels[0], channels[1], channels[2]};
+}
 
 std::string hexOf(Rgb colour) {
   std::array<char, 8> text{};

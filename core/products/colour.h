@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include <Eigen/Core>
 
@@ -18,6 +20,8 @@ struct Rgb {
 };
 
 std::string hexOf(Rgb colour);  // "#0f1218"
+// The other way, six digits with or without #; nothing for another text.
+std::optional<Rgb> rgbOfHex(std::string_view text);
 
 // Light intensities 0 to 1, in which colours may be averaged.
 Eigen::Vector3d linearOf(Rgb colour);
@@ -32,7 +36,8 @@ Rgb rgbOfOkLch(double lightness, double chroma, double hue_rad);
 // also reads in grey and to the colour-blind. The lightness range suits a dark or a white background.
 Rgb evenColour(double t, double low_lightness = 0.38, double high_lightness = 0.92);
 
-// The share of `front` over `back`, mixed in sRGB values: equal shares look about equally strong on dark and white.
+// The share of `front` over `back`, mixed in sRGB values: equal shares look about equally strong on dark and
+// white.
 Rgb mixed(Rgb back, Rgb front, double share);
 
 }  // namespace tiltmap

@@ -38,4 +38,18 @@ Rgb scanColour(std::size_t scan) {
                     std::fmod(kGoldenAngle * static_cast<double>(k), 2.0 * std::numbers::pi));
 }
 
+Rgb scanColour(const ScanEntry& scan, std::size_t index) {
+  if (!scan.colour) return scanColour(index);
+  const std::uint32_t rgb = *scan.colour;
+  return {static_cast<std::uint8_t>(rgb >> 16 & 0xffU), static_cast<std::uint8_t>(rgb >> 8 & 0xffU),
+          static_cast<std::uint8_t>(rgb & 0xffU)};
+}
+
+std::vector<Rgb> scanColours(const ProjectSnapshot& snapshot) {
+  std::vector<Rgb> colours;
+  for (std::size_t i = 0; i < snapshot.scans().size(); ++i)
+    colours.push_back(scanColour(snapshot.scans()[i], i));
+  return colours;
+}
+
 }  // namespace tiltmap

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/products/scan_colours.h"
 #include "core/project/operation.h"
 #include "core/project/operations/relax_operation.h"
 #include "core/scan/range_image.h"
@@ -70,6 +71,7 @@ Result<TopViewInput> topViewOf(const ProjectSnapshot& snapshot, Stage stage, con
   TopViewInput input;
   input.title = title;
   input.world_from_scan = snapshot.filledPoses(stage);
+  input.colours = scanColours(snapshot);
   std::size_t total = 0;
   for (const ScanEntry& scan : snapshot.scans()) total += scan.valid_cells;
   const std::size_t step = total / kMostPoints + 1;

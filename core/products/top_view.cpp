@@ -101,7 +101,7 @@ Layers layersOf(const TopViewInput& input, const TopViewSettings& settings, cons
   const double radius = pointRadius(input, settings, frame);
   layers.point_px = radius;
   for (const TopViewCloud& cloud : input.clouds) {
-    const Vector3d colour = linearOf(topViewScanColour(cloud.scan, settings.background));
+    const Vector3d colour = linearOf(topViewScanColour(cloud.scan, input.colours, settings.background));
     for (const Vector3d& p : cloud.points) {
       if (!p.allFinite()) continue;
       const Vector2d at = frame.pixelOf(p.head<2>());
@@ -182,6 +182,7 @@ TopViewLegend legendOf(const TopViewInput& input, const TopViewSettings& setting
   TopViewLegend legend;
   legend.title = input.title;
   legend.colouring = settings.colouring;
+  legend.colours = input.colours;
   const std::size_t stops = input.world_from_scan.size();
   legend.subtitle = std::to_string(stops) + (stops == 1 ? " stop, " : " stops, ") +
                     groupedInteger(static_cast<long long>(layers.points)) + " points, grid " +
@@ -255,7 +256,7 @@ Result<TopView> drawTopView(const TopViewInput& input, const TopViewSettings& se
   const double full = fullOf(layers);
   const Span heights = heightsOf(input);
   paintPoints(view.image, view.frame, layers, settings, heights, full);
-  drawStops(view.image, view.frame, input.world_from_scan, settings.background);
+  drawStops(view.image, view.frame, input, settings.background);
   drawAxes(view.image, view.frame, inks);
   view.scale_bar =
       drawFooter(view.image, view.frame, bar_m,

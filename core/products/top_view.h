@@ -35,6 +35,7 @@ struct TopViewInput {
   std::string title;  // UTF-8
   std::vector<TopViewCloud> clouds;
   std::vector<Pose> world_from_scan;  // the stops in the order they were driven
+  std::vector<Rgb> colours;           // by scan; those that are not there have the colour of their place
 };
 
 // Where the world is in the picture: x to the right, y up.

@@ -143,7 +143,8 @@ void drawSwatches(RgbImage& image, int left, int top, int width, const TopViewLe
   };
   for (std::size_t k = 0; k < shown; ++k) {
     const Vector2d at = cellAt(k);
-    drawDisc(image, at + Vector2d(6.0, 6.0), 6.0, {topViewScanColour(legend.scans[k], background), 1.0});
+    drawDisc(image, at + Vector2d(6.0, 6.0), 6.0,
+             {topViewScanColour(legend.scans[k], legend.colours, background), 1.0});
     drawText(image, std::to_string(legend.scans[k]), at + Vector2d(17.0, 11.0), TextAnchor::Left, style);
   }
   if (!all)
@@ -172,8 +173,8 @@ const TopViewInks& topViewInks(TopViewBackground background) {
   return background == TopViewBackground::Dark ? dark : white;
 }
 
-Rgb topViewScanColour(std::size_t scan, TopViewBackground background) {
-  const Rgb colour = scanColour(scan);
+Rgb topViewScanColour(std::size_t scan, const std::vector<Rgb>& colours, TopViewBackground background) {
+  const Rgb colour = scan < colours.size() ? colours[scan] : scanColour(scan);
   // Light colours would vanish on paper.
   return background == TopViewBackground::Dark ? colour : mixed(colour, {0, 0, 0}, 0.30);
 }
@@ -199,8 +200,9 @@ void drawGrid(RgbImage& image, const TopViewFrame& frame, double spacing_m, cons
   });
 }
 
-void drawStops(RgbImage& image, const TopViewFrame& frame, const std::vector<Pose>& world_from_scan,
+void drawStops(RgbImage& image, const TopViewFrame& frame, const TopViewInput& input,
                TopViewBackground background) {
+  const std::vector<Pose>& world_from_scan = input.world_from_scan;
   if (world_from_scan.empty()) return;
   const TopViewInks& inks = topViewInks(background);
   std::vector<Vector2d> stops;
@@ -220,7 +222,7 @@ void drawStops(RgbImage& image, const TopViewFrame& frame, const std::vector<Pos
   for (std::size_t i = stops.size(); i-- > 0;) {
     drawArrow(image, stops[i], headings[i], kArrow_px, 2.8, {inks.path, 1.0});
     drawDisc(image, stops[i], kDisc_px + 1.4, {inks.path, 1.0});
-    drawDisc(image, stops[i], kDisc_px, {topViewScanColour(i, background), 1.0});
+    drawDisc(image, stops[i], kDisc_px, {topViewScanColour(i, input.colours, background), 1.0});
   }
   drawLabels(image, frame, stops, headings, inks);
 }

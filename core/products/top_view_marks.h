@@ -23,7 +23,7 @@ struct TopViewInks {
   double high_lightness;
 };
 const TopViewInks& topViewInks(TopViewBackground background);
-Rgb topViewScanColour(std::size_t scan, TopViewBackground background);
+Rgb topViewScanColour(std::size_t scan, const std::vector<Rgb>& colours, TopViewBackground background);
 
 inline constexpr int kTopViewFooterPx = 92;
 
@@ -33,7 +33,7 @@ double roundLength(double limit_m);
 void drawGrid(RgbImage& image, const TopViewFrame& frame, double spacing_m, const TopViewInks& inks);
 // The path as a line, each stop as a disc in its scan's colour with an arrow along its heading, and its
 // number where there is room; numbers of a crowd of stops are left out rather than piled up.
-void drawStops(RgbImage& image, const TopViewFrame& frame, const std::vector<Pose>& world_from_scan,
+void drawStops(RgbImage& image, const TopViewFrame& frame, const TopViewInput& input,
                TopViewBackground background);
 void drawAxes(RgbImage& image, const TopViewFrame& frame, const TopViewInks& inks);
 
@@ -42,6 +42,7 @@ struct TopViewLegend {
   std::string subtitle;
   TopViewColouring colouring = TopViewColouring::Scan;
   std::vector<std::size_t> scans;     // for Scan
+  std::vector<Rgb> colours;           // as in TopViewInput
   std::string low_label, high_label;  // for Height and Density
 };
 ScaleBar drawFooter(RgbImage& image, const TopViewFrame& frame, double bar_m, const TopViewLegend& legend,

@@ -17,8 +17,8 @@ bool same(const Photograph& a, const Photograph& b) {
 }
 
 bool sameBesidePoses(const ScanEntry& a, const ScanEntry& b) {
-  return a.name == b.name && a.source == b.source && a.note == b.note && a.matrix == b.matrix &&
-         a.lines == b.lines && a.geometry_id == b.geometry_id &&
+  return a.name == b.name && a.source == b.source && a.note == b.note && a.colour == b.colour &&
+         a.matrix == b.matrix && a.lines == b.lines && a.geometry_id == b.geometry_id &&
          std::ranges::equal(a.photographs, b.photographs,
                             [](const auto& p, const auto& q) { return same(p, q); });
 }

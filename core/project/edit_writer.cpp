@@ -24,6 +24,13 @@ void requireFinite(const Pose& pose, const std::string& of) {
   if (!pose.isFinite()) refuse("the pose of " + of + " is not finite", of, "check where the pose comes from");
 }
 
+std::optional<std::int64_t> storedColour(std::optional<std::uint32_t> colour) {
+  if (!colour) return std::nullopt;
+  if (*colour > 0xffffffU)
+    refuse("a scan's colour is not 0 to 0xffffff", "colour", "give red, green and blue, 8 bits each");
+  return static_cast<std::int64_t>(*colour);
+}
+
 std::string scanText(ScanId scan) {
   return "scan with id " + std::to_string(scan);
 }
@@ -59,8 +66,9 @@ void EditWriter::apply(const AddScan& step) {
   const std::int64_t geometry = geometryRow(database_, step.scan.geometry);
   const std::int64_t position = database_.integer("SELECT max(position) + 1 FROM scan").value_or(0);
   database_.run(
-      "INSERT INTO scan(position, matrix_id, geometry_id, name, source, note) VALUES (?, ?, ?, ?, ?, ?)",
-      position, matrix, geometry, name, step.scan.source, step.note);
+      "INSERT INTO scan(position, matrix_id, geometry_id, name, source, note, colour) "
+      "VALUES (?, ?, ?, ?, ?, ?, ?)",
+      position, matrix, geometry, name, step.scan.source, step.note, storedColour(step.colour));
   const ScanId scan = database_.lastInsertId();
   added_.push_back(scan);
   setPose(scan, Stage::Odometry, step.scan.odometry);
@@ -85,6 +93,10 @@ void EditWriter::apply(const RenameScan& step) {
 
 void EditWriter::apply(const SetNote& step) {
   database_.run("UPDATE scan SET note = ? WHERE id = ?", step.note, resolved(step.scan));
+}
+
+void EditWriter::apply(const SetColour& step) {
+  database_.run("UPDATE scan SET colour = ? WHERE id = ?", storedColour(step.colour), resolved(step.scan));
 }
 
 void EditWriter::apply(const ReorderScans& step) {
@@ -204,7 +216,8 @@ void EditWriter::apply(const ClearPoses& step) {
 }
 
 void EditWriter::apply(const SetSurvey& step) {
-  const std::string site_frame = step.survey.site_from_world ? storedPoseText(*step.survey.site_from_world) : "";
+  const std::string site_frame =
+      step.survey.site_from_world ? storedPoseText(*step.survey.site_from_world) : "";
   const std::pair<const char*, const std::string*> entries[] = {{"site", &step.survey.site},
                                                                 {"operator", &step.survey.operator_name},
                                                                 {"device", &step.survey.device},

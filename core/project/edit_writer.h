@@ -19,6 +19,7 @@ class EditWriter {
   void apply(const DeleteScans& step);
   void apply(const RenameScan& step);
   void apply(const SetNote& step);
+  void apply(const SetColour& step);
   void apply(const ReorderScans& step);
   void apply(const SetGeometry& step);
   void apply(const AddPhotograph& step);

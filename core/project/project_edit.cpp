@@ -48,6 +48,17 @@ ProjectEdit renameEdit(ScanId scan, std::string name) {
 ProjectEdit noteEdit(ScanId scan, std::string note) {
   return oneStep("note", SetNote{scan, std::move(note)});
 }
+ProjectEdit colourEdit(const ProjectSnapshot& snapshot, const std::vector<ScanId>& scans,
+                       std::optional<std::uint32_t> colour) {
+  ProjectEdit edit;
+  const ScanEntry* only = scans.size() == 1 ? snapshot.find(scans.front()) : nullptr;
+  edit.title = only ? "colour of " + only->name : "colour of " + counted(scans.size(), "scan");
+  for (const ScanId scan : scans) {
+    const ScanEntry* entry = snapshot.find(scan);
+    if (!entry || entry->colour != colour) edit.steps.push_back(SetColour{scan, colour});
+  }
+  return edit;
+}
 ProjectEdit surveyEdit(SurveyInfo survey) {
   return oneStep("survey data", SetSurvey{std::move(survey)});
 }
@@ -125,6 +136,7 @@ AddScan copyOf(const ScanEntry& entry, const Pose& world_from_other) {
   for (const auto& [stage, pose] : entry.poses)
     if (stage != Stage::Odometry) add.poses.emplace(stage, world_from_other * pose);
   add.note = entry.note;
+  add.colour = entry.colour;
   for (const Photograph& photograph : entry.photographs) {
     NewPhotograph copy{photograph.caption, photograph.media_type, photograph.path, {}, {}};
     if (copy.path.empty())

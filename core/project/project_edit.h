@@ -35,6 +35,7 @@ struct AddScan {
   std::map<Stage, Pose> poses;  // world_from_scan of other stages than odometry
   std::string note;
   std::vector<NewPhotograph> photographs;
+  std::optional<std::uint32_t> colour = std::nullopt;  // 0xRRGGBB
 };
 // Takes the scans, their poses, links and photographs out. The matrices stay in the file until it is
 // compacted.
@@ -48,6 +49,10 @@ struct RenameScan {
 struct SetNote {
   ScanId scan = 0;
   std::string note;
+};
+struct SetColour {
+  ScanId scan = 0;
+  std::optional<std::uint32_t> colour;  // 0xRRGGBB; nothing: by the scan's place again
 };
 struct ReorderScans {
   std::vector<ScanId> order;  // every scan once
@@ -87,9 +92,9 @@ struct SetSurvey {
   SurveyInfo survey;
 };
 
-using EditStep =
-    std::variant<AddScan, DeleteScans, RenameScan, SetNote, ReorderScans, SetGeometry, AddPhotograph,
-                 RemovePhotograph, AddLinks, DeleteLinks, SetLinkState, SetPoses, ClearPoses, SetSurvey>;
+using EditStep = std::variant<AddScan, DeleteScans, RenameScan, SetNote, SetColour, ReorderScans, SetGeometry,
+                              AddPhotograph, RemovePhotograph, AddLinks, DeleteLinks, SetLinkState, SetPoses,
+                              ClearPoses, SetSurvey>;
 
 // One entry of the history: undone and redone as a whole.
 struct ProjectEdit {
@@ -97,8 +102,8 @@ struct ProjectEdit {
   std::vector<EditStep> steps;
   // The snapshot the edit was computed from. The project refuses the edit when the scans concerned (all of
   // the snapshot's where `concerned` is empty) have since been deleted or have other matrices, geometry,
-  // poses or links among themselves. Names, notes and photographs may have changed. Without it nothing is
-  // compared.
+  // poses or links among themselves. Names, notes, colours and photographs may have changed. Without it
+  // nothing is compared.
   SnapshotPtr base;
   std::vector<ScanId> concerned;
   std::vector<JobRecord> jobs;  // what computed it
@@ -111,6 +116,8 @@ ProjectEdit importEdit(std::vector<Scan> scans);
 ProjectEdit deleteEdit(const ProjectSnapshot& snapshot, std::vector<ScanId> scans);
 ProjectEdit renameEdit(ScanId scan, std::string name);
 ProjectEdit noteEdit(ScanId scan, std::string note);
+ProjectEdit colourEdit(const ProjectSnapshot& snapshot, const std::vector<ScanId>& scans,
+                       std::optional<std::uint32_t> colour);
 ProjectEdit surveyEdit(SurveyInfo survey);
 ProjectEdit linkStateEdit(LinkId link, LinkState state);
 // A person vouches for what was found: the link becomes one set by hand, which registering again leaves
@@ -140,7 +147,7 @@ struct Change {
   std::string title;
   std::vector<ScanId> scans_added;
   std::vector<ScanId> scans_removed;
-  std::vector<ScanId> scans_changed;  // name, note, photographs, geometry, lines or a pose
+  std::vector<ScanId> scans_changed;  // name, note, colour, photographs, geometry, lines or a pose
   std::vector<LinkId> links_added;
   std::vector<LinkId> links_removed;
   std::vector<LinkId> links_changed;

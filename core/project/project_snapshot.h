@@ -57,6 +57,9 @@ class ScanEntry {
   std::string name;
   std::string source;
   std::string note;
+  // 0xRRGGBB that a person chose, kept with the survey so that tree, pictures and reports agree on every machine;
+  // nothing: by the scan's place.
+  std::optional<std::uint32_t> colour;
   ScannerGeometry geometry;
   std::vector<Photograph> photographs;
   std::map<Stage, Pose> poses;  // world_from_scan; odometry always there

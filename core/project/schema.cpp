@@ -144,7 +144,10 @@ CREATE INDEX photograph_by_scan ON photograph(scan_id);
 CREATE INDEX photograph_by_attachment ON photograph(attachment_id);
 )sql";
 
-constexpr std::array kMigrations = {kVersion1};
+// 0xRRGGBB that a person chose for a scan; NULL: by its place in the survey.
+constexpr Migration kScanColour = "ALTER TABLE scan ADD COLUMN colour INTEGER";
+
+constexpr std::array kMigrations = {kVersion1, kScanColour};
 constexpr std::array kRecorded = {"scan", "pose", "photograph", "link", "survey", "job"};
 
 }  // namespace

@@ -39,7 +39,7 @@ std::vector<ScanEntry> readScans(const Database& database) {
   const auto geometries = readGeometries(database);
   std::vector<ScanEntry> scans;
   Statement query = database.prepare(
-      "SELECT scan.id, name, source, note, geometry_id, matrix_id, rows, columns, lines, valid_cells "
+      "SELECT scan.id, name, source, note, geometry_id, matrix_id, rows, columns, lines, valid_cells, colour "
       "FROM scan JOIN matrix ON matrix.id = matrix_id ORDER BY position, scan.id");
   while (query.step()) {
     ScanEntry entry;
@@ -53,6 +53,9 @@ std::vector<ScanEntry> readScans(const Database& database) {
     entry.columns = query.number(7);
     entry.lines = query.number(8);
     entry.valid_cells = static_cast<std::size_t>(query.integer(9));
+    // What is no colour (a file that another program wrote in) is as if none had been chosen.
+    if (!query.isNull(10) && query.integer(10) >= 0 && query.integer(10) <= 0xffffff)
+      entry.colour = static_cast<std::uint32_t>(query.integer(10));
     const auto geometry = geometries.find(entry.geometry_id);
     if (geometry == geometries.end()) throw damaged(database, "a scan's geometry is missing");
     entry.geometry = geometry->second;

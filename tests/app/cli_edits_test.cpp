@@ -56,6 +56,16 @@ class CliEdits : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST_F(CliEdits, Colour) {
+  edit({"colour", "p.tiltmap", "1", "#ff8800"});
+  EXPECT_EQ(json::parse(info())["scans"][1]["colour"], "#ff8800");
+  EXPECT_TRUE(json::parse(info())["scans"][0]["colour"].is_null());
+  edit({"colour", "p.tiltmap", "1", "default"});
+  EXPECT_TRUE(json::parse(info())["scans"][1]["colour"].is_null());
+  refused({"colour", "p.tiltmap", "1", "orange"}, 1, "orange");
+  refused({"colour", "p.tiltmap", "9", "#ff8800"}, 1, "9");
+}
+
 TEST_F(CliEdits, RenameAndNote) {
   edit({"rename", "p.tiltmap", "1", "by the gate"});
   EXPECT_EQ(object({"info", "p.tiltmap"})["scans"][1]["name"], "by the gate");

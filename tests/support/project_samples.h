@@ -123,6 +123,7 @@ inline std::string visibleState(const ProjectSnapshot& snapshot) {
   std::ostringstream out;
   for (const ScanEntry& scan : snapshot.scans()) {
     out << "scan " << scan.id << " " << scan.name << " | " << scan.source << " | " << scan.note << " | "
+        << (scan.colour ? std::to_string(*scan.colour) : "own colour") << " | "
         << scan.rows << "x" << scan.columns << " lines " << scan.lines << " valid " << scan.valid_cells
         << " lever " << text(scan.geometry.lever_arm_m.x()) << " zero " << text(scan.geometry.tilt_zero_rad)
         << "\n";

@@ -42,7 +42,7 @@ QColor ScanDisplay::colour(ScanId scan) const {
   const SnapshotPtr snapshot = session_.snapshot();
   const auto index = snapshot ? snapshot->indexOf(scan) : std::nullopt;
   if (!index) return Qt::gray;
-  const Rgb rgb = scanColour(*index);
+  const Rgb rgb = scanColour(snapshot->scans()[*index], *index);
   return {rgb.r, rgb.g, rgb.b};
 }
 

@@ -23,7 +23,7 @@ class ScanDisplay : public QObject {
   void showAll();
   void showOnly(const std::vector<ScanId>& scans);
 
-  // By the scan's index, as in pictures and reports.
+  // Chosen by a person or by the scan's index, as in pictures and reports.
   QColor colour(ScanId scan) const;
 
   // The stage whose poses place the scans: the one chosen while the project has it, else the latest.

@@ -173,7 +173,9 @@ struct Scene::Parts {
   double lowLightness() const { return lightGround() ? 0.28 : 0.38; }
   double highLightness() const { return lightGround() ? 0.80 : 0.92; }
   Rgb inkOfScan(std::size_t index) const {
-    const Rgb colour = scanColour(index);
+    const Rgb colour = snapshot && index < snapshot->scans().size()
+                           ? scanColour(snapshot->scans()[index], index)
+                           : scanColour(index);
     return lightGround() ? mixed(colour, {0, 0, 0}, 0.25) : colour;
   }
 

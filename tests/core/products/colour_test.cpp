@@ -37,6 +37,14 @@ TEST(ScanColours, TheFixedOnesAreToldApartByEveryEye) {
       }
 }
 
+TEST(Colour, HexadecimalIsReadAsItIsWritten) {
+  for (const Rgb colour : {Rgb{255, 136, 0}, Rgb{0, 0, 0}, Rgb{1, 2, 254}})
+    EXPECT_EQ(rgbOfHex(hexOf(colour)), colour);
+  EXPECT_EQ(rgbOfHex("FF8800"), (Rgb{255, 136, 0}));
+  for (const char* text : {"", "#", "#ff880", "#ff88000", "#gg0000", "orange", "#+10203", "# 10203"})
+    EXPECT_EQ(rgbOfHex(text), std::nullopt) << text;
+}
+
 TEST(ScanColours, ShowOnBlackAndOnWhite) {
   for (std::size_t k = 0; k < 60; ++k) {
     const double lightness = okLabOf(linearOf(scanColour(k))).x();

@@ -51,8 +51,8 @@ TEST(TopView, PutsAPointAtItsPixelWithXRightAndYUp) {
     // In the scan's colour, and nothing where there is no point.
     const Rgb paper = topViewInks(background).paper;
     EXPECT_GT(distanceBetween(pixelAt(*view, {10, 8}), paper), 0.1);
-    EXPECT_LT(distanceBetween(pixelAt(*view, {10, 8}), topViewScanColour(1, background)),
-              distanceBetween(pixelAt(*view, {10, 8}), topViewScanColour(0, background)));
+    EXPECT_LT(distanceBetween(pixelAt(*view, {10, 8}), topViewScanColour(1, {}, background)),
+              distanceBetween(pixelAt(*view, {10, 8}), topViewScanColour(0, {}, background)));
     EXPECT_GT(distanceBetween(pixelAt(*view, {-10, -8}), paper), 0.1);
     EXPECT_EQ(pixelAt(*view, {8.3, 7.1}), paper);
   }
@@ -95,6 +95,17 @@ TEST(TopView, RoundLengthsAreOneTwoAndFive) {
   EXPECT_DOUBLE_EQ(roundLength(50.0), 50.0);
   EXPECT_DOUBLE_EQ(roundLength(0.3), 0.2);
   EXPECT_DOUBLE_EQ(roundLength(1000.0), 1000.0);
+}
+
+TEST(TopView, AChosenColourIsThatOfTheStopAndItsPoints) {
+  TopViewInput input;
+  input.world_from_scan = {Pose(), Pose::planar(6, 0, 0)};
+  const auto usual = drawTopView(input, everything());
+  input.colours = {Rgb{1, 200, 30}};
+  const auto chosen = drawTopView(input, everything());
+  ASSERT_TRUE(usual && chosen);
+  EXPECT_EQ(pixelAt(*chosen, {0, 0}), (Rgb{1, 200, 30}));
+  EXPECT_EQ(pixelAt(*chosen, {6, 0}), scanColour(1)) << "none was chosen for it";
 }
 
 TEST(TopView, DrawsTheStopInItsScansColourAndTheArrowAlongItsHeading) {

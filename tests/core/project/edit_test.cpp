@@ -64,6 +64,10 @@ std::vector<NamedEdit> everyEdit() {
          return single(ReorderScans{{id(p, 2), id(p, 0), id(p, 1)}});
        }},
       {"note", [=](const Project& p) { return noteEdit(id(p, 2), "rain\nand wind"); }},
+      {"colour",
+       [=](const Project& p) {
+         return colourEdit(*p.snapshot(), {id(p, 0), id(p, 2)}, 0xff8800U);
+       }},
       {"photograph",
        [=](const Project& p) {
          return single(

@@ -63,6 +63,27 @@ TEST_F(SchemaTest, ChangesRecordedBeforeAMigrationThatAppendsAColumnStillReplay)
   EXPECT_EQ(database_.integer("SELECT count(*) FROM survey WHERE value = 'new'"), 1);
 }
 
+TEST_F(SchemaTest, AProjectOfTheFirstVersionComesUpWithItsJournal) {
+  migrate(database_, migrations().first(1));
+  database_.execute(
+      "INSERT INTO matrix VALUES (1, 1, 1, 0, 0, 0, 0, 0);"
+      "INSERT INTO scanner_geometry VALUES (1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0);");
+  Changeset added;
+  {
+    const ChangeRecorder recorder(database_);
+    database_.execute("INSERT INTO scan VALUES (1, 0, 1, 1, 'old', '', '')");
+    added = recorder.changes();
+  }
+  EXPECT_THROW((void)database_.integer("SELECT colour FROM scan"), StoreFailure);
+  migrate(database_);
+  EXPECT_EQ(storedSchemaVersion(database_), schemaVersion());
+  EXPECT_EQ(database_.integer("SELECT count(*) FROM scan WHERE colour IS NULL"), 1);
+  replay(database_, added, Direction::Back);
+  EXPECT_EQ(database_.integer("SELECT count(*) FROM scan"), 0);
+  replay(database_, added, Direction::Forth);
+  EXPECT_EQ(database_.integer("SELECT count(*) FROM scan WHERE name = 'old' AND colour IS NULL"), 1);
+}
+
 TEST_F(SchemaTest, AChangeThatDoesNotFitIsRefused) {
   migrate(database_);
   Changeset changes;

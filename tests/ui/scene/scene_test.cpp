@@ -107,6 +107,15 @@ TEST_F(SceneTest, ScansStandInTheirPlacesInTheirColours) {
   EXPECT_LT(std::max({at(picture, {4, 4, 0}).r, at(picture, {4, 4, 0}).g, at(picture, {4, 4, 0}).b}), 80);
 }
 
+TEST_F(SceneTest, AScanHasTheColourThatWasChosen) {
+  scene->show(snapshot(), Stage::Odometry);
+  must(project->apply(colourEdit(*snapshot(), {id(1)}, 0x10c820U)));
+  scene->show(snapshot(), Stage::Odometry);
+  const RgbImage picture = drawn();
+  EXPECT_LE(differenceOf(at(picture, {8, 4, 0}), Rgb{0x10, 0xc8, 0x20}), 3);
+  EXPECT_LE(differenceOf(at(picture, {0, 4, 0}), scanColour(0)), 3);
+}
+
 TEST_F(SceneTest, AnEmptySceneIsTheBackgroundAlone) {
   EXPECT_EQ(litPixels(drawn()), 0);
   scene->show(snapshot(), Stage::Odometry);
