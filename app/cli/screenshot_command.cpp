@@ -6,6 +6,7 @@
 #include "core/base/text.h"
 #include "core/products/png.h"
 #include "ui/scene/screenshots.h"
+#include "ui/window/window_screenshot.h"
 
 namespace tiltmap::cli {
 
@@ -14,6 +15,9 @@ namespace {
 struct ScreenshotWords {
   std::string project, file;
   std::string panel = "map", size, stage, view = "iso", colour = "scan", quantity = "range", points = "all";
+  std::string perspective = "inspect", theme = "dark";
+  std::vector<std::string> front;
+  double scale = 1.0;
   long long scan = -1;
   double point_size = 2.0;
   bool white = false;
@@ -70,16 +74,42 @@ Result<RgbImage> depthPictureOf(const SnapshotPtr& snapshot, const ScreenshotWor
   return ui::depthScreenshot(snapshot, settings);
 }
 
+Result<RgbImage> windowPicture(const SnapshotPtr& snapshot, const ScreenshotWords& words, const Size& size) {
+  ui::WindowScreenshot settings;
+  settings.panel = words.panel;
+  settings.width_px = size.width;
+  settings.height_px = size.height;
+  settings.scale = words.scale;
+  settings.theme = words.theme == "light" ? ui::ThemeChoice::Light : ui::ThemeChoice::Dark;
+  settings.perspective = ui::parsePerspective(words.perspective).value_or(ui::Perspective::Inspect);
+  settings.front = words.front;
+  if (words.scan >= 0) settings.scan = static_cast<std::size_t>(words.scan);
+  if (!words.stage.empty()) {
+    const auto stage = stageOrLatest(*snapshot, words.stage);
+    if (!stage) return fail(stage.error());
+    settings.stage = *stage;
+  }
+  return ui::windowScreenshot(words.project, settings);
+}
+
+// Where no size is asked for; a depth image of the given width is as high as it needs.
+Size usualSize(const std::string& panel) {
+  if (panel == "map") return {1600, 900};
+  if (panel == "depth") return {1200, 0};
+  return panel == "window" ? Size{1366, 768} : Size{800, 600};
+}
+
 int takeScreenshot(Context& context, const ScreenshotWords& words) {
-  const bool depth = words.panel == "depth";
-  const Result<Size> size =
-      words.size.empty() ? (depth ? Size{1200, 0} : Size{1600, 900}) : sizeOf(words.size);
+  const Result<Size> size = words.size.empty() ? usualSize(words.panel) : sizeOf(words.size);
   if (!size) return context.console.wrongUsage(size.error());
   if (Status status = checkOutput(words.file, words.project); !status)
     return context.console.failed(status.error());
   const auto snapshot = readProject(words.project);
   if (!snapshot) return context.console.failed(snapshot.error());
-  const auto picture = depth ? depthPictureOf(*snapshot, words, *size) : mapPicture(*snapshot, words, *size);
+  const auto draw = words.panel == "map"     ? mapPicture
+                    : words.panel == "depth" ? depthPictureOf
+                                             : windowPicture;
+  const auto picture = draw(*snapshot, words, *size);
   if (!picture) return context.console.failed(picture.error());
   if (Status status = writePng(words.file, *picture); !status) return context.console.failed(status.error());
   context.console.printJson({{"file", words.file},
@@ -99,8 +129,13 @@ void addScreenshot(CLI::App& app, Chosen& chosen) {
   auto* command = app.add_subcommand("screenshot", "A picture of the map or of a scan; needs no display");
   command->add_option("project", words->project, "The project")->required();
   command->add_option("file", words->file, "The PNG file to write")->required();
-  command->add_option("--panel", words->panel, "map (3D view) or depth (depth image)")
-      ->check(CLI::IsMember({"map", "depth"}));
+  const std::vector<std::string> panels = ui::panelNames();
+  std::vector<std::string> pictures = {"map", "depth", "window"};
+  pictures.insert(pictures.end(), panels.begin(), panels.end());
+  command
+      ->add_option("--panel", words->panel,
+                   "map (the scans in 3D), depth (a range matrix), window (all of it), or one of its panels")
+      ->check(CLI::IsMember(pictures));
   command->add_option("--size", words->size, "Width and height in pixels: 1600x900");
   command->add_option("--stage", words->stage, "Whose poses place the scans; default: the latest");
   command->add_option("--view", words->view, "Of the map, default iso")
@@ -115,6 +150,14 @@ void addScreenshot(CLI::App& app, Chosen& chosen) {
           "Depth image of range, median, planar-median, changed, normal, incidence, intensity or code")
       ->check(CLI::IsMember(
           {"range", "median", "planar-median", "changed", "normal", "incidence", "intensity", "code"}));
+  command->add_option("--perspective", words->perspective, "Of the window, default inspect")
+      ->check(CLI::IsMember({"capture", "inspect", "register", "relax"}));
+  command->add_option("--front", words->front, "Panels of the window that are brought to the front")
+      ->check(CLI::IsMember(panels));
+  command->add_option("--theme", words->theme, "Of window and panels: dark or light")
+      ->check(CLI::IsMember({"dark", "light"}));
+  command->add_option("--scale", words->scale, "Of window and panels, as on a fine screen: 1 to 4")
+      ->check(CLI::Range(1.0, 4.0));
   command->add_option("--points", words->points, "all or reduced")->check(CLI::IsMember({"all", "reduced"}));
   command->add_option("--point-size", words->point_size, "Pixels, 1 to 20")->check(CLI::Range(1.0, 20.0));
   command->add_flag("--white", words->white, "On white, for print");

@@ -77,6 +77,65 @@ TEST_F(CliScreenshot, DepthImageNeedsNoOpenGlAndHasTheSizeAsked) {
   EXPECT_EQ(picture.height, 420);
 }
 
+int coloursIn(const RgbImage& picture, double left, double top, double right, double bottom) {
+  std::set<std::string> colours;
+  for (int y = static_cast<int>(top * picture.height); y < bottom * picture.height; ++y)
+    for (int x = static_cast<int>(left * picture.width); x < right * picture.width; ++x)
+      colours.insert(hexOf(picture.at(x, y)));
+  return static_cast<int>(colours.size());
+}
+
+TEST_F(CliScreenshot, TheWholeWindowIsDrawnWithThe3dViewInIt) {
+  const std::string before = fileText(folder_.path() / "p.tiltmap");
+  const ProgramRun result = run({"screenshot", "p.tiltmap", "w.png", "--panel", "window", "--scan", "1"});
+  if (!rendered(result)) GTEST_SKIP() << result.err;
+  EXPECT_EQ(result.err, "");
+  const RgbImage picture = pngPixels(folder_.path() / "w.png");
+  ASSERT_EQ(picture.width, 1366);
+  ASSERT_EQ(picture.height, 768);
+  // In the middle of the right half stand the scans in 3D, each in its colour; a view that was left empty
+  // would be a gradient of a dozen greys.
+  EXPECT_GT(coloursIn(picture, 0.4, 0.2, 0.9, 0.5), 40);
+  EXPECT_GT(coloursIn(picture, 0.0, 0.1, 0.25, 0.5), 20) << "the project tree";
+  EXPECT_GT(coloursIn(picture, 0.4, 0.65, 0.9, 0.9), 40) << "the depth image";
+  EXPECT_LT(picture.at(3, 760).r, 60) << "dark";
+  EXPECT_EQ(fileText(folder_.path() / "p.tiltmap"), before);
+  ASSERT_EQ(
+      run({"screenshot", "p.tiltmap", "l.png", "--panel", "window", "--theme", "light", "--size", "1280x720"})
+          .exit_code,
+      0);
+  const RgbImage light = pngPixels(folder_.path() / "l.png");
+  EXPECT_EQ(light.width, 1280);
+  EXPECT_GT(light.at(3, 712).r, 200);
+}
+
+TEST_F(CliScreenshot, APanelIsDrawnAloneAsOnAFineScreen) {
+  const ProgramRun result = run({"screenshot", "p.tiltmap", "t.png", "--panel", "project-tree", "--size",
+                                 "400x300", "--scale", "2", "--theme", "light"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const RgbImage picture = pngPixels(folder_.path() / "t.png");
+  EXPECT_EQ(picture.width, 800);
+  EXPECT_EQ(picture.height, 600);
+  EXPECT_GT(coloursIn(picture, 0, 0, 1, 1), 20);
+}
+
+TEST_F(CliScreenshot, WindowPicturesDependOnWhatWasAsked) {
+  std::set<std::string> files;
+  const std::vector<std::vector<std::string>> choices = {{"--perspective", "inspect"},
+                                                         {"--perspective", "register"},
+                                                         {"--front", "history"},
+                                                         {"--front", "localisation"},
+                                                         {"--scan", "2"},
+                                                         {"--stage", "truth"}};
+  for (const auto& choice : choices) {
+    std::vector<std::string> words = {"screenshot", "p.tiltmap", "x.png", "--panel", "window"};
+    words.insert(words.end(), choice.begin(), choice.end());
+    const ProgramRun result = run(words);
+    if (!rendered(result)) GTEST_SKIP() << result.err;
+    EXPECT_TRUE(files.insert(fileText(folder_.path() / "x.png")).second) << choice.back();
+  }
+}
+
 TEST_F(CliScreenshot, RefusalsSayWhatToDoAndWriteNothing) {
   const auto refused = [&](std::vector<std::string> words, int code, const std::string& part) {
     words.insert(words.begin(), "screenshot");
@@ -93,6 +152,10 @@ TEST_F(CliScreenshot, RefusalsSayWhatToDoAndWriteNothing) {
   refused({"p.tiltmap", "no.png", "--scan", "77"}, 1, "77");
   refused({"p.tiltmap", "no.png", "--panel", "depth", "--scan", "77"}, 1, "77");
   refused({"missing.tiltmap", "no.png"}, 1, "missing.tiltmap");
+  refused({"p.tiltmap", "no.png", "--panel", "window", "--scan", "77"}, 1, "77");
+  refused({"p.tiltmap", "no.png", "--panel", "window", "--size", "100x100"}, 1, "160");
+  refused({"p.tiltmap", "no.png", "--panel", "window", "--scale", "9"}, 2, "scale");
+  refused({"p.tiltmap", "no.png", "--panel", "window", "--perspective", "sky"}, 2, "sky");
   const ProgramRun result = run({"screenshot", "p.tiltmap", "p.tiltmap"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(run({"info", "p.tiltmap"}).exit_code, 0);  // still a project

@@ -2,6 +2,7 @@
 
 #include <QApplication>
 #include <QIcon>
+#include <QStandardPaths>
 #include <QToolTip>
 
 #include "ui/look/style.h"
@@ -89,7 +90,20 @@ ThemeColours Theme::coloursOf(bool dark) {
   return c;
 }
 
+namespace {
+
+// Where no desktop is known (a plain X server, no display at all), Qt looks for no icons in the usual places.
+void findIcons() {
+  QStringList paths = QIcon::themeSearchPaths();
+  for (const QString& folder : QStandardPaths::standardLocations(QStandardPaths::GenericDataLocation))
+    if (const QString icons = folder + "/icons"; !paths.contains(icons)) paths << icons;
+  QIcon::setThemeSearchPaths(paths);
+}
+
+}  // namespace
+
 Theme::Theme(Preferences& preferences, QObject* parent) : QObject(parent), preferences_(preferences) {
+  findIcons();
   const QPalette system = QApplication::palette();
   system_dark_ = system.color(QPalette::Window).lightness() < system.color(QPalette::WindowText).lightness();
   QApplication::setStyle(new Style);

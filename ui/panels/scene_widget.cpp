@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vtkGenericOpenGLRenderWindow.h>
 
+#include "ui/scene/offscreen_window.h"
+
 namespace tiltmap::ui {
 
 namespace {
@@ -58,6 +60,25 @@ Eigen::Vector2d SceneWidget::pixelAt(const QPointF& place) const {
 QPointF SceneWidget::placeOf(const Eigen::Vector2d& pixel) const {
   const double ratio = devicePixelRatioF();
   return {pixel.x() / ratio, height() - pixel.y() / ratio};
+}
+
+Result<QImage> SceneWidget::pictureWithoutScreen() {
+  const double ratio = devicePixelRatioF();
+  auto offscreen = OffscreenWindow::make(static_cast<int>(std::lround(width() * ratio)),
+                                         static_cast<int>(std::lround(height() * ratio)));
+  if (!offscreen) return fail(offscreen.error());
+  scene_.detach();
+  scene_.attach((*offscreen)->window());
+  scene_.setPixelRatio(ratio);
+  scene_.render();
+  const RgbImage rgb = (*offscreen)->picture();
+  scene_.detach();
+  scene_.attach(*window_);
+  QImage image(rgb.width, rgb.height, QImage::Format_RGB32);
+  for (int y = 0; y < rgb.height; ++y)
+    for (int x = 0; x < rgb.width; ++x)
+      image.setPixel(x, y, qRgb(rgb.at(x, y).r, rgb.at(x, y).g, rgb.at(x, y).b));
+  return image;
 }
 
 void SceneWidget::paintGL() {

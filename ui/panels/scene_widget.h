@@ -28,6 +28,8 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   Eigen::Vector2d pixelAt(const QPointF& place) const;
   // The other way.
   QPointF placeOf(const Eigen::Vector2d& pixel) const;
+  // What the view shows, where no screen draws it. Error: no OpenGL.
+  Result<QImage> pictureWithoutScreen();
 
  Q_SIGNALS:
   void clicked(const QPointF& place);

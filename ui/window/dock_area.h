@@ -22,6 +22,7 @@ class DockArea : public QWidget {
   explicit DockArea(const PanelContext& context, QWidget* parent = nullptr);
   ~DockArea() override;
 
+  const PanelContext& context() const { return context_; }
   Perspective perspective() const { return perspective_; }
   void setPerspective(Perspective perspective);
   // The present one as it was delivered.

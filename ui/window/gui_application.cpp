@@ -55,18 +55,26 @@ Status displayThere() {
   return {};
 }
 
-int runWindow(int& argc, char** argv, const std::string& project, const std::stop_token& stop) {
+void prepareApplication() {
   QApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
   QApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
   QApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
   QSurfaceFormat format = QVTKOpenGLNativeWidget::defaultFormat();
   format.setSamples(0);  // slow where software draws, and points gain nothing
   QSurfaceFormat::setDefaultFormat(format);
-  QApplication application(argc, argv);
+}
+
+void nameApplication() {
   QApplication::setApplicationName("tiltmap");
   QApplication::setApplicationDisplayName({});
   QApplication::setApplicationVersion(qt(programVersion()));
   QApplication::setDesktopFileName("tiltmap");
+}
+
+int runWindow(int& argc, char** argv, const std::string& project, const std::stop_token& stop) {
+  prepareApplication();
+  QApplication application(argc, argv);
+  nameApplication();
 
   const QString trouble = openLogFile(standardLogFilePath());
   sharedLogModel();
