@@ -57,6 +57,7 @@ void addPoses(CLI::App& app, Chosen& chosen);
 void addEvaluate(CLI::App& app, Chosen& chosen);
 void addExport(CLI::App& app, Chosen& chosen);
 void addParameters(CLI::App& app, Chosen& chosen);
+void addDevices(CLI::App& app, Chosen& chosen);
 void addDemo(CLI::App& app, Chosen& chosen);
 void addHistory(CLI::App& app, Chosen& chosen);  // undo, redo, history
 void addEdits(CLI::App& app, Chosen& chosen);    // rename, note, survey, delete, rebase

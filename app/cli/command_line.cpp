@@ -87,9 +87,9 @@ int run(int argc, char** argv) {
   app.footer("`tiltmap COMMAND --help` tells the rest.");
 
   Chosen chosen;
-  for (const auto add :
-       {addNew, addSimulate, addImport, addInfo, addRegister, addRelax, addPoses, addEvaluate, addExport,
-        addParameters, addHistory, addEdits, addPhoto, addLink, addFiles, addDemo, addScreenshot, addGui})
+  for (const auto add : {addNew, addSimulate, addImport, addInfo, addRegister, addRelax, addPoses,
+                         addEvaluate, addExport, addParameters, addHistory, addEdits, addPhoto, addLink,
+                         addFiles, addDemo, addDevices, addScreenshot, addGui})
     add(app, chosen);
 
   try {

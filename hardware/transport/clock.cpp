@@ -32,6 +32,7 @@ Instant RealClock::now() const {
 std::chrono::steady_clock::time_point RealClock::systemTime(Instant at) const {
   // A wait without end stays one, whatever the speed.
   if (at == kNever || speed_ == 1.0) return at;
+  if (at <= start_) return start_;  // long ago, as for a question without waiting
   return start_ + durationOf(secondsOf(at - start_) / speed_);
 }
 
