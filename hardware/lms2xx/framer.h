@@ -34,6 +34,8 @@ class Framer {
   bool giveUpFirst();
   // A telegram seems to have begun: its start is here, its end is not.
   bool waiting() const { return !buffer_.empty(); }
+  // The bytes of the telegram that seems to have begun.
+  std::span<const Byte> start() const { return buffer_; }
   // Command of the telegram that seems to have begun, once that byte is there.
   std::optional<Byte> begunCommand() const;
   void clear();
