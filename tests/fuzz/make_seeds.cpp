@@ -5,6 +5,38 @@
 
 #include "core/io/small_files.h"
 
+namespace {
+
+std::string fromHex(const std::string& text) {
+  std::string bytes;
+  for (std::size_t i = 0; i + 1 < text.size(); i += 3)
+    bytes += static_cast<char>(std::stoi(text.substr(i, 2), nullptr, 16));
+  return bytes;
+}
+
+// The first byte of a seed says how large the pieces are. Telegrams, and the insides of some.
+template <class Seed>
+void seedInstruments(const Seed& seed) {
+  int number = 0;
+  for (const char* telegram :
+       {"05 06 02 80 0A 00 B0 03 00 F4 01 F5 01 F6 01 10 42 08", "3F 06 02 80 03 00 A0 00 10 16 0A 15",
+        "01 02 80 07 00 BB 01 B4 00 32 00 10 03 9D", "02 02 00 01 00 31 15 12", "00 B0 01 20 F4 01 10",
+        "00 B0 01 40 FF 1F 22 11 90", "00 B6 04 01 00 F4 01 10", "00 B7 01 00 02 00 02 00 F4 01 F5 01 10",
+        "00 BF 02 01 00 01 00 01 00 F4 01 10", "00 BE 01 00 01 00 01 00 F4 01 00 00 01 00 02 00 10",
+        "00 C4 01 00 F4 01 01 00 01 00 01 00 0A 10", "00 F5 01 00 01 00 01 00 01 00 F4 01 E0 2E 10",
+        "00 BB 00 B4 00 32 00 10", "00 B2 03 11 02 05 13", "00 92 D4"})
+    seed("lms2xx", ("telegram" + std::to_string(number++)).c_str(), fromHex(telegram));
+  seed("lms2xx", "configuration", "0\xF4" + std::string(34, '\1') + "\x10");
+  seed("lms2xx", "written", "0\xF7\1" + std::string(34, '\1') + "\x10");
+  seed("lms2xx", "status", "0\xB1" + std::string(152, '2') + "\x10");
+  seed("lms2xx", "type", "0\xBALMS291;S14;V02.10 \x10");
+  seed("wire", "session",
+       "# tiltmap wire session 1\n# lms2xx:x\n# begun 5.0\n0.1 = 9600 8N1\n0.2 > 02 00\n0.3 < 06\n0.4 ! "
+       "gone\n");
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   using namespace tiltmap::test;
   if (argc != 2) {
@@ -39,5 +71,6 @@ int main(int argc, char** argv) {
   seed("xyz", "commas", "1,5;2,5;3,5;10\n4,5;5,5;6,5;20\n");
   seed("poses", "tum", "# index x y z qx qy qz qw\n0 0 0 0 0 0 0 1\n1 1 2 3 0 0 0.6 0.8\n");
   seed("poses", "pose", "1 2 3\n4 5 6\n");
+  seedInstruments(seed);
   return 0;
 }
