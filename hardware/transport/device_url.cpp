@@ -4,15 +4,11 @@
 #include <cmath>
 
 #include "core/base/text.h"
-#include "hardware/transport/replay_channel.h"
-#include "hardware/transport/serial_port.h"
-#include "hardware/transport/session_log.h"
+#include "hardware/transport/channel_opener.h"
 
 namespace tiltmap {
 
 namespace {
-
-constexpr std::string_view kReplay = "replay:";
 
 std::vector<std::string> schemeNames(const std::vector<DeviceScheme>& known) {
   std::vector<std::string> names;
@@ -121,27 +117,7 @@ Result<DeviceUrl> parseDeviceUrl(std::string_view text, const std::vector<Device
 }
 
 Result<std::unique_ptr<ByteChannel>> openChannel(const DeviceUrl& url, int baud, RealClock& clock) {
-  const auto given = url.integer("baud", 300, 4000000);
-  if (!given) return fail(given.error());
-  std::unique_ptr<ByteChannel> channel;
-  if (url.port.starts_with(kReplay)) {
-    const auto speed = url.number("speed", 0.01, 1000.0);
-    if (!speed) return fail(speed.error());
-    auto recording = readSession(url.port.substr(kReplay.size()));
-    if (!recording) return fail(recording.error());
-    channel = std::make_unique<ReplayChannel>(std::move(*recording), clock, speed->value_or(1.0));
-  } else {
-    const auto path = resolvePort(url.port, listPorts());
-    if (!path) return fail(path.error());
-    auto port = SerialPort::open(*path, {given->value_or(baud)}, clock);
-    if (!port) return fail(port.error());
-    channel = std::move(*port);
-  }
-  const auto log = url.option("log");
-  if (!log) return channel;
-  auto session = SessionLog::create(*log, url.text());
-  if (!session) return fail(session.error());
-  return std::make_unique<LoggedChannel>(std::move(channel), std::move(*session), clock);
+  return ChannelOpener(url, baud, clock).open();
 }
 
 }  // namespace tiltmap

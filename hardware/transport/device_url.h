@@ -41,7 +41,7 @@ Result<DeviceUrl> parseDeviceUrl(std::string_view text, const std::vector<Device
 
 // Opens what a URL names: a port as resolvePort() finds it, or "replay:FILE" (a recorded session, at ?speed=
 // times its pace). ?log=FILE records the session. `baud` is used where the URL names none. The clock must
-// outlive the channel.
+// outlive the channel. For a driver that connects again and again: ChannelOpener.
 Result<std::unique_ptr<ByteChannel>> openChannel(const DeviceUrl& url, int baud, RealClock& clock);
 
 }  // namespace tiltmap

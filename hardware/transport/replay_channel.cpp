@@ -15,6 +15,7 @@ ReplayChannel::ReplayChannel(WireSession session, Clock& clock, double speed, Ga
       anchor_(clock.now()) {
   if (!(speed > 0.0) || !std::isfinite(speed))
     throw std::invalid_argument("ReplayChannel: the speed must be a positive number");
+  if (!session_.records.empty()) anchor_then_ = session_.records.front().at;
   for (const WireRecord& record : session_.records)
     if (record.kind == WireRecord::Kind::Line) {
       line_ = record.line;
@@ -40,9 +41,7 @@ Instant ReplayChannel::due(const WireRecord& record) const {
 Result<std::size_t> ReplayChannel::read(std::span<Byte> buffer, Instant deadline) {
   for (;;) {
     if (state_ != ChannelState::Open)
-      return fail(state_ == ChannelState::Lost ? "the port was lost here when this was recorded"
-                                               : "the replay was closed",
-                  name_, "replay it again");
+      return fail(state_ == ChannelState::Lost ? lost_ : "the replay was closed", name_, "replay it again");
     if (taken_ < pending_.size()) {
       const std::size_t count = std::min(buffer.size(), pending_.size() - taken_);
       std::copy_n(pending_.begin() + static_cast<std::ptrdiff_t>(taken_), count, buffer.begin());
@@ -67,6 +66,7 @@ Result<std::size_t> ReplayChannel::read(std::span<Byte> buffer, Instant deadline
     if (gate_) gate_(record);
     if (record.kind == WireRecord::Kind::Lost) {
       state_ = ChannelState::Lost;
+      lost_ = record.text;
       continue;
     }
     pending_ = record.bytes;
@@ -75,7 +75,8 @@ Result<std::size_t> ReplayChannel::read(std::span<Byte> buffer, Instant deadline
 }
 
 Status ReplayChannel::write(std::span<const Byte> bytes) {
-  if (state_ != ChannelState::Open) return fail("the replay was closed", name_, "replay it again");
+  if (state_ != ChannelState::Open)
+    return fail(state_ == ChannelState::Lost ? lost_ : "the replay was closed", name_, "replay it again");
   while (!bytes.empty()) {
     if (sent_ >= session_.records.size())
       return fail("the driver wrote " + hexText(bytes) + " where the recording has nothing more", name_,
@@ -110,6 +111,26 @@ void ReplayChannel::close() {
 bool ReplayChannel::finished() const {
   return sent_ >= session_.records.size() && nextReceived() >= session_.records.size() &&
          taken_ >= pending_.size();
+}
+
+ReplayOpener::ReplayOpener(WireSession session, Clock& clock, double speed, ReplayChannel::Gate gate)
+    : about_(session.about), clock_(clock), speed_(speed), gate_(std::move(gate)) {
+  bool open = false;
+  for (WireRecord& record : session.records) {
+    const bool fails = record.kind == WireRecord::Kind::Lost && !open;
+    if (record.kind == WireRecord::Kind::Opened || fails || parts_.empty()) parts_.emplace_back();
+    open = !fails && record.kind != WireRecord::Kind::Lost;
+    parts_.back().push_back(std::move(record));
+  }
+}
+
+Result<std::unique_ptr<ByteChannel>> ReplayOpener::open() {
+  if (next_ >= parts_.size())
+    return fail("the recording ends here", "replay of " + about_, "replay a longer one");
+  std::vector<WireRecord>& part = parts_[next_++];
+  if (part.front().kind == WireRecord::Kind::Lost)
+    return fail(part.front().text, "replay of " + about_, "so it was when this was recorded");
+  return std::make_unique<ReplayChannel>(WireSession{about_, 0.0, std::move(part)}, clock_, speed_, gate_);
 }
 
 }  // namespace tiltmap

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include "hardware/transport/session_log.h"
 
@@ -42,6 +43,7 @@ class ReplayChannel : public ByteChannel {
   std::string name_;
   LineSettings line_;
   ChannelState state_ = ChannelState::Open;
+  std::string lost_;
   std::size_t next_ = 0;        // first record that is not received or skipped
   std::size_t sent_ = 0;        // records before this one are written
   std::size_t sent_bytes_ = 0;  // of the record at sent_
@@ -49,6 +51,22 @@ class ReplayChannel : public ByteChannel {
   Duration anchor_then_{};      // ... and then
   ByteVector pending_;
   std::size_t taken_ = 0;
+};
+
+// A session in which ports were opened several times: each opening gives what came until the next one, or
+// fails as it did then.
+class ReplayOpener {
+ public:
+  ReplayOpener(WireSession session, Clock& clock, double speed = 1.0, ReplayChannel::Gate gate = {});
+  Result<std::unique_ptr<ByteChannel>> open();
+
+ private:
+  std::string about_;
+  std::vector<std::vector<WireRecord>> parts_;
+  std::size_t next_ = 0;
+  Clock& clock_;
+  double speed_;
+  ReplayChannel::Gate gate_;
 };
 
 }  // namespace tiltmap

@@ -47,8 +47,8 @@ std::optional<WireRecord> parseRecord(std::string_view text) {
   record.at = durationOf(*seconds);
   const char kind = text[blank + 1];
   const std::string_view rest = trimmed(text.substr(blank + 2));
-  if (kind == '!') {
-    record.kind = WireRecord::Kind::Lost;
+  if (kind == '!' || kind == '@') {
+    record.kind = kind == '!' ? WireRecord::Kind::Lost : WireRecord::Kind::Opened;
     record.text = std::string(rest);
     return record;
   }
@@ -77,8 +77,10 @@ std::string onOneLine(std::string text) {
 }  // namespace
 
 std::string recordText(const WireRecord& record) {
-  std::string text = fixedReal(secondsOf(record.at), 9);
+  const std::string text = fixedReal(secondsOf(record.at), 9);
   switch (record.kind) {
+    case WireRecord::Kind::Opened:
+      return text + " @ " + onOneLine(record.text) + "\n";
     case WireRecord::Kind::Line:
       return text + " = " + lineText(record.line) + "\n";
     case WireRecord::Kind::Sent:
@@ -111,7 +113,7 @@ Result<WireSession> parseSession(std::string_view text, const std::string& where
       auto record = parseRecord(trimmed(line));
       if (!record || record->at < last)
         return fail("this is no record of a session: " + printable(line), place,
-                    "a record is `SECONDS > BYTES`, with >, <, = or !, in order of time");
+                    "a record is `SECONDS > BYTES`, with >, <, =, @ or !, in order of time");
       last = record->at;
       session.records.push_back(std::move(*record));
     }
@@ -168,6 +170,20 @@ void SessionLog::add(const WireRecord& record) {
   append(recordText(record));
 }
 
+Instant SessionLog::begun(Instant now) {
+  const std::lock_guard lock(mutex_);
+  if (!begun_) begun_ = now;
+  return *begun_;
+}
+
+void SessionLog::add(WireRecord::Kind kind, const std::string& text, Instant now) {
+  WireRecord record;
+  record.kind = kind;
+  record.at = now - begun(now);
+  record.text = text;
+  add(record);
+}
+
 void SessionLog::append(const std::string& text) {
   const std::lock_guard lock(mutex_);
   if (failed_) return;
@@ -182,9 +198,10 @@ std::optional<Error> SessionLog::failed() const {
   return failed_;
 }
 
-LoggedChannel::LoggedChannel(std::unique_ptr<ByteChannel> channel, std::unique_ptr<SessionLog> log,
+LoggedChannel::LoggedChannel(std::unique_ptr<ByteChannel> channel, std::shared_ptr<SessionLog> log,
                              const Clock& clock)
-    : channel_(std::move(channel)), log_(std::move(log)), clock_(clock), begun_(clock.now()) {
+    : channel_(std::move(channel)), log_(std::move(log)), clock_(clock), begun_(log_->begun(clock.now())) {
+  log_->add(WireRecord::Kind::Opened, channel_->name(), clock.now());
   WireRecord first = record(WireRecord::Kind::Line);
   first.line = channel_->line();
   log_->add(first);

@@ -3,10 +3,11 @@
 //   # tiltmap wire session 1
 //   # lms2xx:/dev/ttyUSB0
 //   # begun 1767225600.000000
-//   0.000013200 = 9600 8N1            the line's settings from now on
-//   0.000051000 > 02 00 01 00 31 15 12    handed to the port
+//   0.000000000 @ /dev/ttyUSB0         a port was opened
+//   0.000013200 = 9600 8N1             the line's settings from now on
+//   0.000051000 > 02 00 01 00 31 15 12   handed to the port
 //   0.083120441 < 06                   came from the instrument
-//   2.100000000 ! the port is gone     the channel failed
+//   2.100000000 ! the port is gone     the channel failed, or no port could be opened
 //
 // Seconds since the beginning. A line is written to the file in one piece before the call returns, so that it
 // outlives the program; a thread brings it to the disk within a quarter of a second. A line cut off at the
@@ -26,12 +27,12 @@
 namespace tiltmap {
 
 struct WireRecord {
-  enum class Kind { Line, Sent, Received, Lost };
+  enum class Kind { Opened, Line, Sent, Received, Lost };
   Kind kind = Kind::Received;
   Duration at{};  // since the session began
   ByteVector bytes;
   LineSettings line;  // of Line
-  std::string text;   // of Lost
+  std::string text;   // of Opened, the port; of Lost, why
 };
 
 struct WireSession {
@@ -57,6 +58,9 @@ class SessionLog {
 
   // A disk that is full stops the recording, not the session: failed() then says why.
   void add(const WireRecord& record);
+  void add(WireRecord::Kind kind, const std::string& text, Instant now);
+  // Of the first thing recorded, from which on all records count.
+  Instant begun(Instant now);
   std::optional<Error> failed() const;
 
  private:
@@ -67,13 +71,14 @@ class SessionLog {
   mutable std::mutex mutex_;
   bool unsynced_ = false;
   std::optional<Error> failed_;
+  std::optional<Instant> begun_;
   std::jthread sync_;
 };
 
-// Another channel, everything of it recorded.
+// Another channel, everything of it recorded. Several, one after the other, may share a log.
 class LoggedChannel : public ByteChannel {
  public:
-  LoggedChannel(std::unique_ptr<ByteChannel> channel, std::unique_ptr<SessionLog> log, const Clock& clock);
+  LoggedChannel(std::unique_ptr<ByteChannel> channel, std::shared_ptr<SessionLog> log, const Clock& clock);
 
   Result<std::size_t> read(std::span<Byte> buffer, Instant deadline) override;
   Status write(std::span<const Byte> bytes) override;
@@ -88,7 +93,7 @@ class LoggedChannel : public ByteChannel {
   WireRecord record(WireRecord::Kind kind, std::span<const Byte> bytes = {}) const;
   void lost(const Error& error);
   std::unique_ptr<ByteChannel> channel_;
-  std::unique_ptr<SessionLog> log_;
+  std::shared_ptr<SessionLog> log_;
   const Clock& clock_;
   const Instant begun_;
   bool told_lost_ = false;

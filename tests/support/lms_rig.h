@@ -46,7 +46,11 @@ struct LmsRig {
     clock.detach(emulator);
   }
   Result<std::unique_ptr<ByteChannel>> open() {
-    if (!plugged_in) return fail("there is no such port", port, "plug it in again");
+    if (!plugged_in) {
+      const Error error{"there is no such port", port, "plug it in again"};
+      if (refused) refused(error);
+      return fail(error);
+    }
     MemoryPair pair = MemoryPair::make(clock, port);
     device = std::move(pair.device);
     unplug = pair.unplug;
@@ -61,6 +65,7 @@ struct LmsRig {
   std::unique_ptr<MemoryChannel> device;
   std::function<void()> unplug;
   std::function<std::unique_ptr<ByteChannel>(std::unique_ptr<ByteChannel>)> wrap;
+  std::function<void(const Error&)> refused;
   std::string port = "port A";
   bool plugged_in = true;
   std::vector<LmsEmulator::SentScan> sent;

@@ -361,34 +361,50 @@ TEST(LmsFaults, NamesOfFaults) {
   EXPECT_FALSE(rig.emulator.applyFault("flip-bit=1.5"));
 }
 
-TEST(LmsFaults, ARecordedSessionWithFaultsReplaysToTheSameLines) {
+TEST(LmsFaults, ARecordedSessionWithFaultsAndAnUnpluggedPortReplaysToTheSameLines) {
   const test::TemporaryFolder folder;
-  std::vector<Measurement> then, now;
+  std::vector<std::string> then, now;
+  // What an operator would see, line by line.
+  const auto session = [](LmsScanner& scanner, const std::function<void(int)>& disturb) {
+    std::vector<std::string> seen;
+    const auto note = [&](const auto& result) {
+      seen.push_back(result ? "done" : result.error().what);
+      return result.has_value();
+    };
+    note(scanner.connect());
+    for (int i = 0; i < 30; ++i) {
+      disturb(i);
+      const auto line = scanner.scan();
+      if (note(line))
+        seen.back() = std::to_string(line->raw.values[17]) + " " + std::to_string(line->raw.values[300]);
+      if (scanner.state() != LmsState::Ready) note(scanner.recover(20.0));
+    }
+    return seen;
+  };
   {
     LmsRig rig;
+    const std::shared_ptr<SessionLog> log = SessionLog::create(folder / "log", "lms2xx:x").value();
     rig.wrap = [&](std::unique_ptr<ByteChannel> channel) -> std::unique_ptr<ByteChannel> {
-      return std::make_unique<LoggedChannel>(
-          std::move(channel), SessionLog::create(folder / "log", "lms2xx:x").value(), rig.clock);
+      return std::make_unique<LoggedChannel>(std::move(channel), log, rig.clock);
     };
-    ASSERT_TRUE(rig.scanner.connect());
-    ASSERT_TRUE(rig.emulator.applyFault("flip-bit=0.001"));
-    for (int i = 0; i < 20; ++i)
-      if (const auto line = rig.scanner.scan()) then.push_back(line->raw);
+    rig.refused = [&](const Error& error) { log->add(WireRecord::Kind::Lost, error.what, rig.clock.now()); };
+    then = session(rig.scanner, [&](int i) {
+      if (i == 2) rig.emulator.faults().flip_bit = 0.001;
+      if (i == 12) {
+        rig.emulator.faults() = {};
+        rig.unplug();
+        rig.plugged_in = false;
+      }
+      if (i == 14) rig.plugged_in = true;
+    });
   }
   VirtualClock clock;
-  LmsScanner scanner(
-      [&]() -> Result<std::unique_ptr<ByteChannel>> {
-        auto session = readSession(folder / "log");
-        if (!session) return fail(session.error());
-        return std::make_unique<ReplayChannel>(std::move(*session), clock);
-      },
-      clock);
-  const auto report = scanner.connect();
-  ASSERT_TRUE(report) << report.error().what;
-  for (int i = 0; i < 20; ++i)
-    if (const auto line = scanner.scan()) now.push_back(line->raw);
-  EXPECT_GT(then.size(), 5U);
+  ReplayOpener opener(readSession(folder / "log").value(), clock);
+  LmsScanner scanner([&] { return opener.open(); }, clock);
+  now = session(scanner, [](int) {});
   EXPECT_EQ(now, then);
+  EXPECT_EQ(std::ranges::count(then, "there is no such port"), 2) << "recovering gave up, twice";
+  EXPECT_GT(std::ranges::count_if(then, [](const std::string& text) { return text.find(' ') < 5; }), 10);
 }
 
 }  // namespace

@@ -105,14 +105,16 @@ TEST(SessionLog, HoldsBothDirectionsInOrderAndReadsBack) {
   ASSERT_TRUE(session) << session.error().what;
   EXPECT_EQ(session->about, "lms2xx:somewhere");
   EXPECT_GT(session->begun_unix_s, 1.6e9);
-  ASSERT_EQ(session->records.size(), 8U);
-  EXPECT_EQ(session->records[0].kind, WireRecord::Kind::Line);
-  EXPECT_EQ(session->records[0].line, LineSettings{9600});
-  EXPECT_EQ(session->records[1].kind, WireRecord::Kind::Sent);
-  EXPECT_EQ(session->records[1].bytes, (ByteVector{1, 2, 3}));
-  EXPECT_EQ(session->records[2].kind, WireRecord::Kind::Received);
-  EXPECT_EQ(session->records[6].bytes, (ByteVector{4}));
-  EXPECT_EQ(session->records[7].kind, WireRecord::Kind::Lost) << "told once";
+  ASSERT_EQ(session->records.size(), 9U);
+  EXPECT_EQ(session->records[0].kind, WireRecord::Kind::Opened);
+  EXPECT_EQ(session->records[0].text, "in memory");
+  EXPECT_EQ(session->records[1].kind, WireRecord::Kind::Line);
+  EXPECT_EQ(session->records[1].line, LineSettings{9600});
+  EXPECT_EQ(session->records[2].kind, WireRecord::Kind::Sent);
+  EXPECT_EQ(session->records[2].bytes, (ByteVector{1, 2, 3}));
+  EXPECT_EQ(session->records[3].kind, WireRecord::Kind::Received);
+  EXPECT_EQ(session->records[7].bytes, (ByteVector{4}));
+  EXPECT_EQ(session->records[8].kind, WireRecord::Kind::Lost) << "told once";
   // Written and read, the text is the same.
   std::string again;
   for (const WireRecord& record : session->records) again += recordText(record);
