@@ -71,6 +71,9 @@ Result<RgbImage> depthPictureOf(const SnapshotPtr& snapshot, const ScreenshotWor
   const auto quantity = parseDepthQuantity(words.quantity);
   if (!quantity) return fail(quantity.error());
   settings.quantity = *quantity;
+  const auto stage = stageOrLatest(*snapshot, words.stage);
+  if (!stage) return fail(stage.error());
+  settings.stage = *stage;
   return ui::depthScreenshot(snapshot, settings);
 }
 
@@ -145,11 +148,11 @@ void addScreenshot(CLI::App& app, Chosen& chosen) {
   command->add_option("--colour", words->colour, "Points by scan, height, range, intensity, normal or age")
       ->check(CLI::IsMember({"scan", "height", "range", "intensity", "normal", "age"}));
   command
-      ->add_option(
-          "--quantity", words->quantity,
-          "Depth image of range, median, planar-median, changed, normal, incidence, intensity or code")
-      ->check(CLI::IsMember(
-          {"range", "median", "planar-median", "changed", "normal", "incidence", "intensity", "code"}));
+      ->add_option("--quantity", words->quantity,
+                   "Depth image of range, median, planar-median, changed, normal, incidence, intensity, code "
+                   "or residual")
+      ->check(CLI::IsMember({"range", "median", "planar-median", "changed", "normal", "incidence",
+                             "intensity", "code", "residual"}));
   command->add_option("--perspective", words->perspective, "Of the window, default inspect")
       ->check(CLI::IsMember({"capture", "inspect", "register", "relax"}));
   command->add_option("--front", words->front, "Panels of the window that are brought to the front")

@@ -100,6 +100,12 @@ Rgb evenColour(double t, double low_lightness, double high_lightness) {
   return rgbOfOkLch(low_lightness + (high_lightness - low_lightness) * s, 0.15, hue);
 }
 
+Rgb signedColour(double t, double middle_lightness) {
+  const double s = std::clamp(std::isfinite(t) ? t : 0.0, -1.0, 1.0);
+  const double hue = (s < 0.0 ? 255.0 : 55.0) * std::numbers::pi / 180.0;
+  return rgbOfOkLch(middle_lightness - 0.28 * std::abs(s), 0.17 * std::abs(s), hue);
+}
+
 Rgb mixed(Rgb back, Rgb front, double share) {
   const double s = std::clamp(share, 0.0, 1.0);
   const auto channel = [s](std::uint8_t b, std::uint8_t f) {

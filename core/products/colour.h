@@ -36,6 +36,10 @@ Rgb rgbOfOkLch(double lightness, double chroma, double hue_rad);
 // also reads in grey and to the colour-blind. The lightness range suits a dark or a white background.
 Rgb evenColour(double t, double low_lightness = 0.38, double high_lightness = 0.92);
 
+// `t` -1 to 1 (clipped): blue over grey to orange, equal sizes equally far from the grey in the middle; apart
+// also for the colour-blind. On a white ground give a darker middle.
+Rgb signedColour(double t, double middle_lightness = 0.86);
+
 // The share of `front` over `back`, mixed in sRGB values: equal shares look about equally strong on dark and
 // white.
 Rgb mixed(Rgb back, Rgb front, double share);

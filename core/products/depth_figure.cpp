@@ -69,7 +69,8 @@ void drawBar(RgbImage& figure, const DepthImage& image, double low, double high,
   const double width = std::min(place.width, 420.0);
   const int left = static_cast<int>(place.left), top = static_cast<int>(place.top);
   for (int x = 0; x < static_cast<int>(width); ++x)
-    fillRectangle(figure, left + x, top, 1, 12, {depthColour(x / (width - 1.0), 0.0, 1.0), 1.0});
+    fillRectangle(figure, left + x, top, 1, 12,
+                  {depthColour(image, low + x / (width - 1.0) * (high - low), low, high), 1.0});
   const TextStyle style{kText_px, inks.dim_text, 0.13, 0.0, {}};
   for (const double value : axisTicks(low, high, 5)) {
     const double x = place.left + (value - low) / (high - low) * width;
@@ -93,6 +94,11 @@ void drawLegend(RgbImage& figure, const DepthImage& image, const Place& place, c
 }
 
 std::string subtitleOf(const DepthImage& image) {
+  if (image.quantity == DepthQuantity::Residual)
+    return image.title + (image.overlapping == 0
+                              ? ": no cell overlaps another scan"
+                              : ": median " + fixedReal(1e3 * image.median_residual_m, 1) + " mm over " +
+                                    groupedInteger(static_cast<long long>(image.overlapping)) + " cells");
   if (image.quantity != DepthQuantity::Changed)
     return image.title + (image.unit.empty() ? "" : " (" + image.unit + ")");
   if (image.changed == 0) return image.title + ": no cells";

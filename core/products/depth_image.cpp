@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/base/text.h"
+#include "core/products/residuals.h"
 #include "core/scan/filters.h"
 #include "core/scan/normals.h"
 
@@ -17,8 +18,8 @@ namespace {
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 constexpr Rgb kChangedColour{255, 140, 0};
 
-const std::array<std::string, 8> kNames = {"range",  "median",    "planar-median", "changed",
-                                           "normal", "incidence", "intensity",     "code"};
+const std::array<std::string, 9> kNames = {"range",     "median",    "planar-median", "changed", "normal",
+                                           "incidence", "intensity", "code",          "residual"};
 
 // Between these lie all but a fiftieth of the values at either end; a little apart where all are alike.
 void chooseEnds(DepthImage& image) {
@@ -33,6 +34,10 @@ void chooseEnds(DepthImage& image) {
   };
   image.low = at(0.02);
   image.high = at(0.98);
+  if (image.isSigned()) {
+    image.high = std::max({std::abs(image.low), std::abs(image.high), 1e-3});
+    image.low = -image.high;
+  }
   if (!(image.high - image.low > 1e-6)) image.high = image.low + 1.0;
 }
 
@@ -55,6 +60,14 @@ void fillChanged(DepthImage& image, const RangeImagePtr& source) {
   image.legend = {{"changed", kChangedColour}};
   image.changed = filtered.changes.size();
   image.mean_change_m = filtered.meanChange();
+}
+
+void fillResiduals(DepthImage& image, const std::vector<float>& residuals) {
+  image.value = residuals;
+  const ResidualSummary summary = summaryOf(residuals);
+  image.overlapping = summary.cells;
+  image.median_residual_m = summary.median_m;
+  image.low = -0.1, image.high = 0.1;  // where there are none
 }
 
 Rgb normalColour(const Eigen::Vector3d& normal) {
@@ -120,15 +133,16 @@ void fillCodes(DepthImage& image, const RangeImage& source) {
 }
 
 DepthImage emptyImage(const RangeImage& source, const ScannerGeometry& geometry, DepthQuantity quantity) {
-  static const std::array<const char*, 8> titles = {"Range",
+  static const std::array<const char*, 9> titles = {"Range",
                                                     "Range, 3 × 3 median",
                                                     "Range, planar median",
                                                     "Changed by the 3 × 3 median",
                                                     "Normal",
                                                     "Angle of incidence",
                                                     "Intensity",
-                                                    "Codes"};
-  static const std::array<const char*, 8> units = {"m", "m", "m", "m", "", "°", "", ""};
+                                                    "Codes",
+                                                    "Residual after registration"};
+  static const std::array<const char*, 9> units = {"m", "m", "m", "m", "", "°", "", "", "m"};
   DepthImage image;
   image.quantity = quantity;
   image.rows = source.rows();
@@ -166,12 +180,15 @@ Result<DepthQuantity> parseDepthQuantity(const std::string& name) {
 }
 
 Result<DepthImage> depthImageOf(const RangeImagePtr& source, const ScannerGeometry& geometry,
-                                DepthQuantity quantity) {
+                                DepthQuantity quantity, const std::vector<float>& residuals) {
   if (!source->isMatrix())
     return fail("the scan is an unordered cloud and has no matrix to draw", "depth image",
                 "look at it in 3D, or import it from a file that keeps the scanner's grid");
   if (quantity == DepthQuantity::Intensity && !source->hasIntensity())
     return fail("the scan has no intensity", "depth image", "choose another quantity");
+  if (quantity == DepthQuantity::Residual && residuals.size() != source->cells())
+    return fail("the residuals of the scan are not known", "depth image",
+                "register the scan, so that there are others to measure it against");
   DepthImage image = emptyImage(*source, geometry, quantity);
   switch (quantity) {
     case DepthQuantity::Range:
@@ -197,6 +214,9 @@ Result<DepthImage> depthImageOf(const RangeImagePtr& source, const ScannerGeomet
     case DepthQuantity::Code:
       fillCodes(image, *source);
       break;
+    case DepthQuantity::Residual:
+      fillResiduals(image, residuals);
+      break;
   }
   chooseEnds(image);
   if (quantity == DepthQuantity::Incidence) image.low = 0.0, image.high = 90.0;
@@ -205,6 +225,11 @@ Result<DepthImage> depthImageOf(const RangeImagePtr& source, const ScannerGeomet
 
 Rgb depthColour(double value, double low, double high) {
   return evenColour(high > low ? (value - low) / (high - low) : 0.0, 0.30, 0.92);
+}
+
+Rgb depthColour(const DepthImage& image, double value, double low, double high) {
+  if (!image.isSigned()) return depthColour(value, low, high);
+  return signedColour(value / std::max({std::abs(low), std::abs(high), 1e-9}));
 }
 
 RgbImage depthPicture(const DepthImage& image, double low, double high, Rgb no_data) {
@@ -225,7 +250,7 @@ RgbImage depthPicture(const DepthImage& image, double low, double high, Rgb no_d
         const auto grey = static_cast<std::uint8_t>(std::lround(205.0 - 150.0 * t));
         pixel = {grey, grey, grey};
       } else if (std::isfinite(image.value[cell])) {
-        pixel = image.colour.empty() ? depthColour(image.value[cell], low, high) : image.colour[cell];
+        pixel = image.colour.empty() ? depthColour(image, image.value[cell], low, high) : image.colour[cell];
       }
     }
   return picture;

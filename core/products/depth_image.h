@@ -21,13 +21,16 @@ enum class DepthQuantity {
   Normal,        // the surface's normal, scan frame
   Incidence,     // between beam and normal
   Intensity,
-  Code,  // why a cell holds a point, or none
+  Code,      // why a cell holds a point, or none
+  Residual,  // after registration: the signed distance from other scans' surfaces
 };
 inline constexpr DepthQuantity kDepthQuantities[] = {
-    DepthQuantity::Range,  DepthQuantity::Median,    DepthQuantity::PlanarMedian, DepthQuantity::Changed,
-    DepthQuantity::Normal, DepthQuantity::Incidence, DepthQuantity::Intensity,    DepthQuantity::Code};
+    DepthQuantity::Range,     DepthQuantity::Median, DepthQuantity::PlanarMedian,
+    DepthQuantity::Changed,   DepthQuantity::Normal, DepthQuantity::Incidence,
+    DepthQuantity::Intensity, DepthQuantity::Code,   DepthQuantity::Residual};
 
-// "range", "median", "planar-median", "changed", "normal", "incidence", "intensity", "code": for flags.
+// "range", "median", "planar-median", "changed", "normal", "incidence", "intensity", "code", "residual":
+// for flags.
 const std::string& depthQuantityName(DepthQuantity quantity);
 Result<DepthQuantity> parseDepthQuantity(const std::string& name);
 
@@ -52,6 +55,8 @@ struct DepthImage {
   std::vector<float> backdrop;     // changed cells: the range, drawn in grey below; else empty
   std::size_t changed = 0;
   double mean_change_m = 0.0;
+  std::size_t overlapping = 0;  // residuals: cells that have one, and the median of their sizes
+  double median_residual_m = 0.0;
   // Most values lie between these: the colour bar's ends unless it is locked.
   double low = 0.0;
   double high = 1.0;
@@ -63,6 +68,8 @@ struct DepthImage {
   std::vector<std::pair<std::string, Rgb>> legend;  // normals and codes
 
   bool hasColourBar() const { return colour.empty() && quantity != DepthQuantity::Changed; }
+  // Zero is the middle of the colours.
+  bool isSigned() const { return quantity == DepthQuantity::Residual; }
   std::size_t index(int row, int column) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
            static_cast<std::size_t>(column);
@@ -77,15 +84,18 @@ struct DepthImage {
   int rowAtPixel(int y) const { return pixelOfRow(y); }
 };
 
-// Error: an unordered cloud, which has no matrix; intensity of a scan that has none.
+// `residuals`: one a cell, as ProjectResiduals gives them; for that quantity only. Error: an unordered cloud,
+// which has no matrix; intensity of a scan that has none; residuals that are not there.
 Result<DepthImage> depthImageOf(const RangeImagePtr& image, const ScannerGeometry& geometry,
-                                DepthQuantity quantity);
+                                DepthQuantity quantity, const std::vector<float>& residuals = {});
 
 // columns x rows pixels. Values outside low..high get the colour of the nearer end; `no_data` fills cells
 // without a value.
 RgbImage depthPicture(const DepthImage& image, double low, double high, Rgb no_data);
 // The colour of one value between low and high.
 Rgb depthColour(double value, double low, double high);
+// The same as this image shows it: of signed values zero is the middle, whatever the ends.
+Rgb depthColour(const DepthImage& image, double value, double low, double high);
 
 // "measured", "no return", "dazzled (LMS 8190)": what a code means.
 std::string cellCodeText(CellCode code);

@@ -8,7 +8,7 @@
 namespace tiltmap::ui {
 
 Workspace::Workspace(Preferences& preferences, QObject* parent)
-    : QObject(parent), preferences_(preferences), jobs_(session_), display_(session_) {
+    : QObject(parent), preferences_(preferences), jobs_(session_), display_(session_), residuals_(session_) {
   connect(&session_, &ProjectSession::failed, &messages_, &Messages::error);
   connect(&jobs_, &JobQueue::failed, &messages_, &Messages::error);
   connect(&jobs_, &JobQueue::finished, this, &Workspace::tellFinished);

@@ -7,6 +7,7 @@
 #include "ui/models/messages.h"
 #include "ui/models/preferences.h"
 #include "ui/models/project_session.h"
+#include "ui/models/residuals.h"
 #include "ui/models/scan_display.h"
 #include "ui/models/selection.h"
 
@@ -31,6 +32,7 @@ class Workspace : public QObject {
   ScanDisplay& display() { return display_; }
   const ScanDisplay& display() const { return display_; }
   Messages& messages() { return messages_; }
+  Residuals& residuals() { return residuals_; }
 
   // Starts an operation with the number of threads that the user prefers, unless `values` says otherwise. A
   // refusal is shown as a message; the job's id else.
@@ -47,6 +49,7 @@ class Workspace : public QObject {
   Selection selection_;
   ScanDisplay display_;
   Messages messages_;
+  Residuals residuals_;
 };
 
 }  // namespace tiltmap::ui

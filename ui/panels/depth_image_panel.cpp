@@ -17,6 +17,7 @@
 #include "ui/look/empty_state.h"
 #include "ui/look/icons.h"
 #include "ui/look/theme.h"
+#include "ui/models/project_words.h"
 #include "ui/models/strings.h"
 #include "ui/models/workspace.h"
 #include "ui/window/file_dialogs.h"
@@ -43,6 +44,8 @@ const char* shortTitle(DepthQuantity quantity) {
       return "Intensity";
     case DepthQuantity::Code:
       return "Codes";
+    case DepthQuantity::Residual:
+      return "Residual";
   }
   return "";
 }
@@ -122,6 +125,8 @@ DepthImagePanel::DepthImagePanel(const PanelContext& context, QWidget* parent)
   connect(&workspace.session(), &ProjectSession::snapshotReplaced, this, &DepthImagePanel::refreshScan);
   connect(&workspace.selection(), &Selection::hoveredChanged, this, &DepthImagePanel::refreshMarks);
   connect(&workspace.selection(), &Selection::pickedChanged, this, &DepthImagePanel::refreshMarks);
+  connect(&workspace.residuals(), &Residuals::changed, this, &DepthImagePanel::refreshResiduals);
+  connect(&workspace.display(), &ScanDisplay::stageChanged, this, &DepthImagePanel::refreshResiduals);
   showTwo(two_->isChecked());
   refreshScan();
 }
@@ -225,7 +230,18 @@ void DepthImagePanel::showTwo(bool two) {
 
 std::shared_ptr<const DepthImage> DepthImagePanel::imageOf(DepthQuantity shown, QString& trouble) const {
   if (!image_) return nullptr;
-  auto depth = depthImageOf(image_, geometry_, shown);
+  ResidualsPtr residuals;
+  if (shown == DepthQuantity::Residual) {
+    Workspace& workspace = context_.workspace;
+    const Stage stage = workspace.display().stage();
+    residuals = workspace.residuals().of(*scan_, stage);
+    if (!residuals) {
+      const std::string why = workspace.residuals().trouble(*scan_, stage);
+      trouble = why.empty() ? "Computing the residuals…" : qt(why);
+      return nullptr;
+    }
+  }
+  auto depth = depthImageOf(image_, geometry_, shown, residuals ? *residuals : std::vector<float>());
   if (depth) return std::make_shared<const DepthImage>(std::move(*depth));
   trouble = qt(depth.error().what) + ": " + qt(depth.error().remedy);
   return nullptr;
@@ -243,8 +259,26 @@ void DepthImagePanel::refreshSide(int side) {
       text = QString("Changed by the 3 × 3 median: %1 cells, mean change %2 m")
                  .arg(qt(groupedInteger(static_cast<long long>(image->changed))),
                       number(image->mean_change_m, 2));
+    else if (image && image->quantity == DepthQuantity::Residual && (view == views_[0] || isTwofold()))
+      text = image->overlapping == 0
+                 ? QString("Residual, %1: no cell overlaps another scan")
+                       .arg(stageTitle(context_.workspace.display().stage()))
+                 : QString("Residual, %1: median %2 mm over %3 cells that overlap other scans")
+                       .arg(stageTitle(context_.workspace.display().stage()),
+                            number(1e3 * image->median_residual_m, 1),
+                            qt(groupedInteger(static_cast<long long>(image->overlapping))));
   changed_->setText(text);
   changed_->setVisible(!text.isEmpty());
+}
+
+void DepthImagePanel::refreshResiduals() {
+  bool any = false;
+  for (int side = 0; side < 2; ++side)
+    if (image_ && quantity(side) == DepthQuantity::Residual && (side == 0 || isTwofold())) {
+      refreshSide(side);
+      any = true;
+    }
+  if (any) refreshRange();
 }
 
 void DepthImagePanel::refreshScan() {
@@ -299,7 +333,10 @@ void DepthImagePanel::refreshRange() {
   if (bar) {
     const auto [low, high] = views_[0]->range();
     const QString suffix = shown->unit.empty() ? QString() : " " + qt(shown->unit);
-    for (QDoubleSpinBox* box : {low_, high_}) box->setSuffix(suffix);
+    for (QDoubleSpinBox* box : {low_, high_}) {
+      box->setSuffix(suffix);
+      box->setDecimals(shown->isSigned() ? 3 : 2);  // residuals are millimetres
+    }
     low_->setValue(low);
     high_->setValue(high);
   }
@@ -361,6 +398,12 @@ void DepthImagePanel::refreshReadout() {
   text += QString("   point (%1, %2, %3) %4")
               .arg(lengthNumber(points_[k].x(), unit), lengthNumber(points_[k].y(), unit),
                    lengthNumber(points_[k].z(), unit), unitName(unit));
+  for (const DepthView* view : views_)
+    if (const DepthImage* shown = view->image();
+        shown && shown->quantity == DepthQuantity::Residual && std::isfinite(shown->value[k])) {
+      text += "   residual " + smallLengthText(shown->value[k], unit);
+      break;
+    }
   text += normals_[k].isZero() ? "   no normal" : "   normal " + vectorText(normals_[k], 2);
   if (image_->hasIntensity()) text += "   intensity " + number(image_->intensity(k), 0);
   readout_->setText(text);

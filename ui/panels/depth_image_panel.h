@@ -33,6 +33,7 @@ class DepthImagePanel : public QWidget {
   void buildBar();
   void refreshScan();  // another scan, or its matrix changed
   void refreshSide(int side);
+  void refreshResiduals();
   void refreshRange();
   void refreshMarks();
   void refreshReadout();

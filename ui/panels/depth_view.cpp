@@ -180,7 +180,7 @@ void DepthView::paintBar(QPainter& painter, const QRectF& seen) const {
   const QRectF bar(seen.right() + 12, seen.top() + metrics.height(), kBarWidth,
                    std::max(10.0, seen.height() - metrics.height()));
   for (int y = 0; y < static_cast<int>(bar.height()); ++y) {
-    const Rgb c = depthColour(1.0 - y / (bar.height() - 1.0), 0.0, 1.0);
+    const Rgb c = depthColour(*image_, high - y / (bar.height() - 1.0) * (high - low), low, high);
     painter.fillRect(QRectF(bar.left(), bar.top() + y, bar.width(), 1.0), QColor(c.r, c.g, c.b));
   }
   if (!image_->unit.empty())

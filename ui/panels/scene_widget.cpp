@@ -4,8 +4,12 @@
 #include <QMouseEvent>
 #include <QSurfaceFormat>
 #include <QWheelEvent>
+#include <chrono>
 #include <cmath>
 #include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+
+#include "ui/scene/offscreen_window.h"
 
 #include "ui/scene/offscreen_window.h"
 
@@ -15,6 +19,11 @@ namespace {
 
 constexpr double kDragBegins_px = 4.0;
 constexpr int kStillAfter_ms = 200;
+constexpr double kGrasp_px = 9.0;
+// A fast graphics card draws more points while moving; one that takes longer than the second draws fewer
+// again.
+constexpr double kQuickFrame_s = 0.012, kSlowFrame_s = 0.025;
+constexpr std::size_t kMostMovingPoints = 20'000'000;
 
 }  // namespace
 
@@ -28,7 +37,9 @@ SceneWidget::SceneWidget(Scene& scene, QWidget* parent)
   setRenderWindow(window_.Get());
   // VTK's own handling of mouse and keys stays out: turning keeps z upright and goes about what was clicked.
   setEnableHiDPI(false);
+  if (interactor()) interactor()->SetInteractorStyle(nullptr);
   scene_.attach(*window_);
+  scene_.setGradual(true);
   setFocusPolicy(Qt::StrongFocus);
   setMouseTracking(true);
   setMinimumSize(160, 120);
@@ -70,9 +81,11 @@ Result<QImage> SceneWidget::pictureWithoutScreen() {
   scene_.detach();
   scene_.attach((*offscreen)->window());
   scene_.setPixelRatio(ratio);
+  scene_.setGradual(false);
   scene_.render();
   const RgbImage rgb = (*offscreen)->picture();
   scene_.detach();
+  scene_.setGradual(true);
   scene_.attach(*window_);
   QImage image(rgb.width, rgb.height, QImage::Format_RGB32);
   for (int y = 0; y < rgb.height; ++y)
@@ -88,8 +101,63 @@ void SceneWidget::paintGL() {
   if (window_->GetSize()[0] != width_px || window_->GetSize()[1] != height_px)
     window_->SetSize(width_px, height_px);
   scene_.prepare();
+  const auto begin = std::chrono::steady_clock::now();
   window_->Render();
+  if (scene_.isMoving()) {
+    window_->WaitForCompletion();
+    adaptMovingPoints(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  } else if (!scene_.isRefined()) {
+    soon_.start();  // the rest when mouse and keys have had their turn
+  }
   QVTKOpenGLNativeWidget::paintGL();
+}
+
+void SceneWidget::adaptMovingPoints(double frame_s) {
+  if (frame_s < kQuickFrame_s)
+    moving_points_ = std::min(kMostMovingPoints, moving_points_ + moving_points_ / 4);
+  else if (frame_s > kSlowFrame_s)
+    moving_points_ = std::max(kMovingPoints, moving_points_ - moving_points_ / 4);
+  scene_.setMovingPoints(moving_points_);
+}
+
+QImage SceneWidget::wholePicture() {
+  scene_.setGradual(false);
+  const QImage picture = grabFramebuffer();
+  scene_.setGradual(true);
+  return picture;
+}
+
+Result<QImage> SceneWidget::pictureOf(const QSize& size, const SceneColours& colours,
+                                      const SceneColours& usual) {
+  makeCurrent();
+  auto window = OffscreenWindow::inCurrentContext(size.width(), size.height());
+  if (!window) return fail(window.error());
+  const double ratio = scene_.pixelRatio();
+  const double height_px = std::max(1.0, height() * devicePixelRatioF());
+  scene_.attach((*window)->window());
+  scene_.setGradual(false);
+  scene_.setMoving(false);
+  scene_.setColours(colours);
+  scene_.setPixelRatio(ratio * size.height() / height_px);
+  scene_.render();
+  const RgbImage drawn = (*window)->picture();
+  scene_.detach();
+  window->reset();
+  scene_.attach(*window_);
+  scene_.setGradual(true);
+  scene_.setColours(usual);
+  scene_.setPixelRatio(ratio);
+  doneCurrent();
+  drawSoon();
+  QImage picture(drawn.width, drawn.height, QImage::Format_RGB888);
+  for (int y = 0; y < drawn.height; ++y) {
+    unsigned char* line = picture.scanLine(y);
+    for (int x = 0; x < drawn.width; ++x) {
+      const Rgb c = drawn.at(x, y);
+      line[3 * x] = c.r, line[3 * x + 1] = c.g, line[3 * x + 2] = c.b;
+    }
+  }
+  return picture;
 }
 
 bool SceneWidget::event(QEvent* event) {
@@ -97,7 +165,7 @@ bool SceneWidget::event(QEvent* event) {
   if (event->type() == QEvent::ShortcutOverride) {
     const auto* key = static_cast<QKeyEvent*>(event);
     if (!(key->modifiers() & (Qt::ControlModifier | Qt::AltModifier)) &&
-        QString("02456789FO+-=").contains(QChar(key->key())) && key->key() < 256)
+        QString("02456789FMO+-=").contains(QChar(key->key())) && key->key() < 256)
       event->accept();
     return true;
   }
@@ -133,34 +201,70 @@ void SceneWidget::mousePressEvent(QMouseEvent* event) {
   buttons_ = event->buttons();
   pressed_ = last_ = event->localPos();
   dragged_ = false;
-  scene_.setPivot(pixelAt(pressed_));
+  handle_ = event->button() == Qt::LeftButton
+                ? scene_.sliceHandleAt(pixelAt(pressed_), kGrasp_px * devicePixelRatioF())
+                : std::nullopt;
+  drags_divider_ = !handle_ && event->button() == Qt::LeftButton && isAtDivider(pressed_);
+  if (!handle_ && !drags_divider_) scene_.setPivot(pixelAt(pressed_));
   event->accept();
+}
+
+bool SceneWidget::isAtDivider(const QPointF& place) const {
+  return scene_.compare() == SceneCompare::Wipe &&
+         std::abs(place.x() - scene_.divider() * width()) <= kGrasp_px;
+}
+
+void SceneWidget::showCursor(const QPointF& place) {
+  if (scene_.sliceHandleAt(pixelAt(place), kGrasp_px * devicePixelRatioF()))
+    setCursor(Qt::SizeAllCursor);
+  else if (isAtDivider(place))
+    setCursor(Qt::SplitHCursor);
+  else
+    unsetCursor();
+}
+
+void SceneWidget::dragTo(const QPointF& place, Qt::KeyboardModifiers keys) {
+  const Eigen::Vector2d by = pixelAt(place) - pixelAt(last_);
+  last_ = place;
+  if (drags_divider_) {
+    scene_.setDivider(place.x() / std::max(1, width()));  // the pictures of both sides stay as they are
+    update();
+    return;
+  }
+  beginMoving();
+  if (handle_) {
+    scene_.dragSlice(*handle_, by);
+    Q_EMIT sliceDragged();
+  } else if (buttons_ == Qt::LeftButton && !(keys & Qt::ShiftModifier)) {
+    scene_.turn(by);
+  } else {
+    scene_.pan(by);
+  }
+  update();
 }
 
 void SceneWidget::mouseMoveEvent(QMouseEvent* event) {
   event->accept();
   if (!isDragging()) {
+    showCursor(event->localPos());
     Q_EMIT hovered(event->localPos());
     return;
   }
   const QPointF from_press = event->localPos() - pressed_;
   if (!dragged_ && std::hypot(from_press.x(), from_press.y()) < kDragBegins_px) return;
   dragged_ = true;
-  const Eigen::Vector2d by = pixelAt(event->localPos()) - pixelAt(last_);
-  last_ = event->localPos();
-  beginMoving();
-  if (buttons_ == Qt::LeftButton && !(event->modifiers() & Qt::ShiftModifier))
-    scene_.turn(by);
-  else
-    scene_.pan(by);
-  update();
+  dragTo(event->localPos(), event->modifiers());
 }
 
 void SceneWidget::mouseReleaseEvent(QMouseEvent* event) {
   event->accept();
   const bool click = isDragging() && !dragged_ && event->button() == Qt::LeftButton;
   buttons_ = event->buttons();
-  if (!isDragging()) still_.start();
+  if (!isDragging()) {
+    still_.start();
+    handle_.reset();
+    drags_divider_ = false;
+  }
   if (click) Q_EMIT clicked(event->localPos());
 }
 
@@ -221,6 +325,12 @@ void SceneWidget::keyPressEvent(QKeyEvent* event) {
     case Qt::Key_O:
       scene_.setOrthographic(!scene_.isOrthographic());
       Q_EMIT orthographicChanged();
+      break;
+    case Qt::Key_M:
+      Q_EMIT measureAsked();
+      break;
+    case Qt::Key_Escape:
+      Q_EMIT escaped();
       break;
     case Qt::Key_Left:
       turned(-step, 0);

@@ -2,7 +2,6 @@
 
 #include <QComboBox>
 #include <QDoubleSpinBox>
-#include <QHBoxLayout>
 #include <QLabel>
 #include <QMenu>
 #include <QStackedLayout>
@@ -12,12 +11,18 @@
 #include "core/products/png.h"
 #include "ui/actions/action_registry.h"
 #include "ui/look/empty_state.h"
+#include "ui/look/flow_layout.h"
 #include "ui/look/icons.h"
 #include "ui/look/theme.h"
 #include "ui/models/project_words.h"
 #include "ui/models/strings.h"
 #include "ui/models/workspace.h"
+#include "ui/panels/compare_bar.h"
+#include "ui/panels/controls.h"
+#include "ui/panels/measure_bar.h"
+#include "ui/panels/picture_bar.h"
 #include "ui/panels/scene_widget.h"
+#include "ui/panels/slice_bar.h"
 #include "ui/window/file_dialogs.h"
 
 namespace tiltmap::ui {
@@ -29,24 +34,6 @@ Rgb rgbOf(const QColor& colour) {
           static_cast<std::uint8_t>(colour.blue())};
 }
 
-QToolButton* toggle(QWidget* parent, const QString& name, const QString& text, const QString& tip, bool on) {
-  auto* button = new QToolButton(parent);
-  button->setObjectName(name);
-  button->setAccessibleName(text);
-  button->setText(text);
-  button->setToolTip(tip);
-  button->setCheckable(true);
-  button->setChecked(on);
-  button->setAutoRaise(true);
-  return button;
-}
-
-void describe(QWidget* widget, const QString& name, const QString& accessible, const QString& tip) {
-  widget->setObjectName(name);
-  widget->setAccessibleName(accessible);
-  widget->setToolTip(tip);
-}
-
 }  // namespace
 
 View3dPanel::View3dPanel(const PanelContext& context, QWidget* parent)
@@ -55,7 +42,7 @@ View3dPanel::View3dPanel(const PanelContext& context, QWidget* parent)
   describe(view_, "view3d-view", "3D view of the scans",
            "Drag turns, right or Shift-drag shifts, wheel zooms, click picks a point.\n"
            "Keys: 8 top, 2 bottom, 5 front, 0 back, 4 left, 6 right, 7 and 9 at an angle, O orthographic, "
-           "F frames the selection");
+           "F frames the selection, M measures, Esc forgets what was measured");
   empty_ = new EmptyState("No scans yet. Import some, or simulate a survey.",
                           context.actions.find("op.import"), this);
   empty_->setObjectName("view3d-empty");
@@ -68,6 +55,11 @@ View3dPanel::View3dPanel(const PanelContext& context, QWidget* parent)
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(0);
   layout->addWidget(bar_);
+  for (QWidget* tool :
+       std::initializer_list<QWidget*>{compare_bar_, slice_bar_, measure_bar_, picture_bar_}) {
+    tool->hide();
+    layout->addWidget(tool);
+  }
   layout->addWidget(pages, 1);
   setFocusProxy(view_);
 
@@ -89,10 +81,22 @@ View3dPanel::View3dPanel(const PanelContext& context, QWidget* parent)
   });
   connect(&context.theme, &Theme::changed, this, &View3dPanel::applyTheme);
 
-  connect(view_, &SceneWidget::clicked, this, [this](const QPointF& place) {
-    const auto cell = scene_->pick(view_->pixelAt(place), 8.0 * view_->devicePixelRatioF());
-    if (cell) context_.workspace.selection().setCurrentScan(cell->scan);
-    context_.workspace.selection().setPicked(cell);
+  connect(&workspace.residuals(), &Residuals::changed, &residuals_soon_, [this] {
+    if (!residuals_soon_.isActive()) residuals_soon_.start();
+  });
+  residuals_soon_.setSingleShot(true);
+  residuals_soon_.setInterval(150);  // many scans: not after each of them
+  connect(&residuals_soon_, &QTimer::timeout, this, &View3dPanel::refreshResiduals);
+
+  connect(view_, &SceneWidget::clicked, this, &View3dPanel::takeClick);
+  connect(view_, &SceneWidget::sliceDragged, slice_bar_, &SliceBar::refresh);
+  connect(view_, &SceneWidget::measureAsked, measure_, &QToolButton::toggle);
+  connect(view_, &SceneWidget::escaped, this, [this] {
+    // First what was measured goes, then the tool.
+    if (scene_->measured().empty())
+      measure_->setChecked(false);
+    else
+      measure_bar_->clear();
   });
   connect(view_, &SceneWidget::hovered, this, [this](const QPointF& place) {
     // Looking through more points than this would hold up the pointer.
@@ -123,22 +127,34 @@ QWidget* View3dPanel::view() const {
 }
 
 QImage View3dPanel::picture() {
-  return view_->grabFramebuffer();
+  return view_->wholePicture();
+}
+
+void View3dPanel::takeClick(const QPointF& place) {
+  const auto cell = scene_->pick(view_->pixelAt(place), 8.0 * view_->devicePixelRatioF());
+  if (measure_bar_->isActive()) {
+    const auto point = cell ? scene_->shownPoint(*cell, view_->pixelAt(place)) : std::nullopt;
+    if (point) measure_bar_->take(*point);
+    return;
+  }
+  if (cell) context_.workspace.selection().setCurrentScan(cell->scan);
+  context_.workspace.selection().setPicked(cell);
 }
 
 void View3dPanel::buildBar() {
   Preferences& preferences = context_.workspace.preferences();
   bar_ = new QWidget(this);
-  auto* layout = new QHBoxLayout(bar_);
+  auto* layout = new FlowLayout(bar_);
   layout->setContentsMargins(8, 4, 8, 4);
   layout->setSpacing(8);
 
   colouring_ = new QComboBox(bar_);
   describe(colouring_, "view3d-colouring", "Colours of the points", "What the colours of the points show");
   const std::pair<SceneColouring, const char*> colourings[] = {
-      {SceneColouring::Scan, "By scan"},     {SceneColouring::Height, "By height"},
-      {SceneColouring::Range, "By range"},   {SceneColouring::Intensity, "By intensity"},
-      {SceneColouring::Normal, "By normal"}, {SceneColouring::Age, "By age"}};
+      {SceneColouring::Scan, "By scan"},        {SceneColouring::Height, "By height"},
+      {SceneColouring::Range, "By range"},      {SceneColouring::Intensity, "By intensity"},
+      {SceneColouring::Normal, "By normal"},    {SceneColouring::Age, "By age"},
+      {SceneColouring::Residual, "By residual"}};
   for (const auto& [colouring, text] : colourings)
     colouring_->addItem(text, qt(sceneColouringName(colouring)));
   colouring_->setCurrentIndex(
@@ -187,26 +203,58 @@ void View3dPanel::buildBar() {
   views->setMenu(menu);
 
   orthographic_ =
-      toggle(bar_, "view3d-orthographic", "Ortho", "Without perspective, with a scale bar (O)", false);
-  path_ = toggle(bar_, "view3d-path", "Path", "The path, with an arrow along the heading of each stop",
-                 preferences.text("view3d/path", "1") == "1");
-  grid_ = toggle(bar_, "view3d-grid", "Grid", "A grid on the ground; its size stands in the corner",
-                 preferences.text("view3d/grid", "1") == "1");
-  auto* save = new QToolButton(bar_);
-  describe(save, "view3d-save", "Save picture", "Save what is shown as a PNG file");
-  save->setIcon(icon("document-save"));
-  save->setAutoRaise(true);
-  connect(save, &QToolButton::clicked, this, &View3dPanel::savePicture);
+      toggleButton(bar_, "view3d-orthographic", "Ortho", "Without perspective, with a scale bar (O)", false);
+  path_ = toggleButton(bar_, "view3d-path", "Path", "The path, with an arrow along the heading of each stop",
+                       preferences.text("view3d/path", "1") == "1");
+  grid_ = toggleButton(bar_, "view3d-grid", "Grid", "A grid on the ground; its size stands in the corner",
+                       preferences.text("view3d/grid", "1") == "1");
+  shaded_ = toggleButton(bar_, "view3d-shaded", "Shading",
+                         "Edges and hollows stand out by their depth (eye-dome lighting)",
+                         preferences.text("view3d/shaded", "0") == "1");
+  compare_ =
+      toggleButton(bar_, "view3d-compare", "Compare", "Two stages of the poses, before and after", false);
+  slice_ = toggleButton(bar_, "view3d-slice", "Slice", "Only the points within a box", false);
+  measure_ = toggleButton(bar_, "view3d-measure", "Measure", "Distance between two points (M)", false);
+  save_ = toggleButton(bar_, "view3d-save", "Save picture", "Save what is shown as a PNG file of any size",
+                       false);
+  save_->setIcon(icon("document-save"));
+  save_->setToolButtonStyle(Qt::ToolButtonIconOnly);
+  computing_ = new QLabel(bar_);
+  computing_->setObjectName("view3d-computing");
+  computing_->setAccessibleName("What is being computed");
+  computing_->hide();
 
-  for (QWidget* widget : std::initializer_list<QWidget*>{colouring_, stage_, points_, size_, views,
-                                                         orthographic_, path_, grid_})
+  compare_bar_ = new CompareBar(*scene_, this);
+  slice_bar_ = new SliceBar(*scene_, this);
+  measure_bar_ = new MeasureBar(*scene_, preferences, this);
+  picture_bar_ = new PictureBar(this);
+  compare_bar_->setObjectName("view3d-compare-bar");
+  slice_bar_->setObjectName("view3d-slice-bar");
+  measure_bar_->setObjectName("view3d-measure-bar");
+  picture_bar_->setObjectName("view3d-picture-bar");
+
+  for (QWidget* widget :
+       std::initializer_list<QWidget*>{colouring_, stage_, points_, size_, views, orthographic_, path_, grid_,
+                                       shaded_, compare_, slice_, measure_, save_, computing_})
     layout->addWidget(widget);
-  layout->addStretch();
-  layout->addWidget(save);
+  connect(compare_, &QToolButton::toggled, compare_bar_, &CompareBar::setActive);
+  connect(slice_, &QToolButton::toggled, slice_bar_, &SliceBar::setActive);
+  connect(measure_, &QToolButton::toggled, measure_bar_, &MeasureBar::setActive);
+  connect(save_, &QToolButton::toggled, this, [this](bool on) {
+    picture_bar_->setWanted(view_->size() * view_->devicePixelRatioF());
+    picture_bar_->setVisible(on);
+  });
+  connect(picture_bar_, &PictureBar::viewSizeAsked, this,
+          [this] { picture_bar_->setWanted(view_->size() * view_->devicePixelRatioF()); });
+  connect(picture_bar_, &PictureBar::saveAsked, this, &View3dPanel::askForPicture);
+  connect(compare_bar_, &CompareBar::sidesChanged, this, &View3dPanel::refreshResiduals);
+  connect(compare_bar_, &CompareBar::changed, view_, &SceneWidget::drawSoon);
+  connect(slice_bar_, &SliceBar::changed, view_, &SceneWidget::drawSoon);
+  connect(measure_bar_, &MeasureBar::changed, view_, &SceneWidget::drawSoon);
   for (QComboBox* box : {colouring_, points_})
     connect(box, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &View3dPanel::applySettings);
   connect(size_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, &View3dPanel::applySettings);
-  for (QToolButton* button : {path_, grid_})
+  for (QToolButton* button : {path_, grid_, shaded_})
     connect(button, &QToolButton::toggled, this, &View3dPanel::applySettings);
   connect(orthographic_, &QToolButton::toggled, this, [this](bool on) {
     if (scene_->isOrthographic() != on) scene_->setOrthographic(on);
@@ -227,6 +275,7 @@ void View3dPanel::applySettings() {
   settings.point_px = size_->value();
   settings.path = path_->isChecked();
   settings.grid = grid_->isChecked();
+  settings.shaded = shaded_->isChecked();
   tellTroubles(scene_->setSettings(settings));
   Preferences& preferences = context_.workspace.preferences();
   preferences.setText("view3d/colouring", colouring_->currentData().toString());
@@ -234,13 +283,35 @@ void View3dPanel::applySettings() {
   preferences.setText("view3d/point-size", QString::number(size_->value()));
   preferences.setText("view3d/path", path_->isChecked() ? "1" : "0");
   preferences.setText("view3d/grid", grid_->isChecked() ? "1" : "0");
+  preferences.setText("view3d/shaded", shaded_->isChecked() ? "1" : "0");
+  refreshResiduals();
   view_->drawSoon();
 }
 
-void View3dPanel::applyTheme() {
+SceneColours View3dPanel::usualColours() const {
   const ThemeColours& c = context_.theme.colours();
-  scene_->setColours(
-      {rgbOf(c.view_top), rgbOf(c.view_bottom), rgbOf(c.view_text), rgbOf(c.view_grid), rgbOf(c.no_data)});
+  return {rgbOf(c.view_top), rgbOf(c.view_bottom), rgbOf(c.view_text), rgbOf(c.view_grid), rgbOf(c.no_data)};
+}
+
+void View3dPanel::applyTheme() {
+  scene_->setColours(usualColours());
+  view_->drawSoon();
+}
+
+void View3dPanel::refreshResiduals() {
+  const SnapshotPtr snapshot = context_.workspace.snapshot();
+  if (!snapshot || scene_->settings().colouring != SceneColouring::Residual) {
+    computing_->hide();
+    return;
+  }
+  Residuals& residuals = context_.workspace.residuals();
+  const Stage stage = context_.workspace.display().stage();
+  const ScanResiduals now = residuals.ofAll(stage);
+  const bool both = scene_->compare() != SceneCompare::Off;
+  scene_->setResiduals(now, both ? residuals.ofAll(scene_->before()) : ScanResiduals());
+  const int wanted = residuals.wanted();
+  computing_->setText(QString("Computing residuals: %1 to go…").arg(wanted));
+  computing_->setVisible(wanted > 0);
   view_->drawSoon();
 }
 
@@ -258,7 +329,10 @@ void View3dPanel::refreshStages() {
 void View3dPanel::refreshScans() {
   const SnapshotPtr snapshot = context_.workspace.snapshot();
   refreshStages();
-  tellTroubles(scene_->show(snapshot, snapshot ? context_.workspace.display().stage() : Stage::Odometry));
+  const Stage stage = snapshot ? context_.workspace.display().stage() : Stage::Odometry;
+  tellTroubles(scene_->show(snapshot, stage));
+  compare_bar_->setStages(snapshot, stage);
+  refreshResiduals();
   const bool some = snapshot && !snapshot->scans().empty();
   pages_->setCurrentWidget(some ? static_cast<QWidget*>(view_) : empty_);
   bar_->setEnabled(some);
@@ -271,16 +345,25 @@ void View3dPanel::tellTroubles(const std::vector<std::string>& troubles) {
                                        "verify the project file (Project, Verify)"});
 }
 
-void View3dPanel::savePicture() {
+Status View3dPanel::writePicture(const QString& file, const QSize& size, bool on_white) {
+  const auto image =
+      view_->pictureOf(size, on_white ? SceneColours::white() : usualColours(), usualColours());
+  if (!image) return fail(image.error());
+  RgbImage rgb(image->width(), image->height(), {});
+  for (int y = 0; y < image->height(); ++y) {
+    const unsigned char* line = image->constScanLine(y);
+    for (int x = 0; x < image->width(); ++x) rgb.at(x, y) = {line[3 * x], line[3 * x + 1], line[3 * x + 2]};
+  }
+  return writePng(pathOf(file), rgb);
+}
+
+void View3dPanel::askForPicture() {
   askForFiles(this, context_.workspace.preferences(),
               {FileQuestion::Save, "Save picture", "Pictures (*.png)", "png", "pictures",
                context_.workspace.session().name() + "-3d.png"},
               [this](const QStringList& files) {
-                const QImage image = picture().convertToFormat(QImage::Format_RGB888);
-                RgbImage rgb(image.width(), image.height(), {});
-                for (int y = 0; y < image.height(); ++y)
-                  for (int x = 0; x < image.width(); ++x) rgb.at(x, y) = rgbOf(image.pixelColor(x, y));
-                const Status status = writePng(pathOf(files.front()), rgb);
+                const Status status =
+                    writePicture(files.front(), picture_bar_->wanted(), picture_bar_->onWhite());
                 if (status)
                   context_.workspace.messages().note("Wrote " + files.front());
                 else

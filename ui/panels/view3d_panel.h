@@ -16,7 +16,11 @@ class QToolButton;
 
 namespace tiltmap::ui {
 
+class CompareBar;
+class MeasureBar;
+class PictureBar;
 class SceneWidget;
+class SliceBar;
 
 class View3dPanel : public QWidget {
   Q_OBJECT
@@ -27,8 +31,11 @@ class View3dPanel : public QWidget {
 
   Scene& scene() { return *scene_; }
   QWidget* view() const;
-  // What the view shows now, drawn anew.
+  // What the view shows now, drawn anew with all points.
   QImage picture();
+  // The same at any size, as a PNG file.
+  Status writePicture(const QString& file, const QSize& size, bool on_white);
+  CompareBar& compareBar() { return *compare_bar_; }
 
  private:
   void buildBar();
@@ -36,7 +43,10 @@ class View3dPanel : public QWidget {
   void refreshStages();
   void applySettings();
   void applyTheme();
-  void savePicture();
+  void refreshResiduals();
+  void askForPicture();
+  SceneColours usualColours() const;
+  void takeClick(const QPointF& place);
   void tellTroubles(const std::vector<std::string>& troubles);
 
   PanelContext context_;
@@ -52,6 +62,17 @@ class View3dPanel : public QWidget {
   QToolButton* orthographic_;
   QToolButton* path_;
   QToolButton* grid_;
+  QToolButton* shaded_;
+  QToolButton* compare_;
+  QToolButton* slice_;
+  QToolButton* measure_;
+  QToolButton* save_;
+  QLabel* computing_;
+  CompareBar* compare_bar_;
+  SliceBar* slice_bar_;
+  MeasureBar* measure_bar_;
+  PictureBar* picture_bar_;
+  QTimer residuals_soon_;
 };
 
 }  // namespace tiltmap::ui

@@ -1,4 +1,5 @@
 #include "core/products/depth_figure.h"
+#include "core/products/residuals.h"
 #include "ui/scene/screenshots.h"
 
 namespace tiltmap::ui {
@@ -8,7 +9,13 @@ Result<RgbImage> depthScreenshot(const SnapshotPtr& snapshot, const DepthScreens
   if (!scan) return fail(scan.error());
   const auto image = (*scan)->image();
   if (!image) return fail(image.error());
-  const auto depth = depthImageOf(*image, (*scan)->geometry, settings.quantity);
+  std::vector<float> residuals;
+  if (settings.quantity == DepthQuantity::Residual) {
+    auto computed = ProjectResiduals(snapshot, settings.stage).of(settings.scan);
+    if (!computed) return fail(computed.error());
+    residuals = std::move(*computed);
+  }
+  const auto depth = depthImageOf(*image, (*scan)->geometry, settings.quantity, residuals);
   if (!depth) return fail(depth.error());
   DepthFigureSettings figure;
   figure.width_px = settings.width_px;

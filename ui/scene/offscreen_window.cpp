@@ -46,7 +46,7 @@ struct OffscreenWindow::Parts {
   Parts& operator=(const Parts&) = delete;
   ~Parts() {
     if (window) {
-      eglMakeCurrent(display, surface, surface, context);
+      if (context != EGL_NO_CONTEXT) eglMakeCurrent(display, surface, surface, context);
       window->Finalize();
       window = nullptr;
     }
@@ -107,23 +107,38 @@ struct OffscreenWindow::Parts {
 OffscreenWindow::OffscreenWindow(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 OffscreenWindow::~OffscreenWindow() = default;
 
+Status OffscreenWindow::checkSize(int width_px, int height_px) {
+  if (width_px >= 16 && height_px >= 16 && width_px <= 16384 && height_px <= 16384) return {};
+  return fail("a picture of " + std::to_string(width_px) + " x " + std::to_string(height_px) +
+                  " pixels cannot be rendered",
+              "size", "choose 16 to 16384 pixels for either side");
+}
+
+void OffscreenWindow::makeWindow(Parts& parts, int width_px, int height_px) {
+  parts.window = vtkSmartPointer<vtkGenericOpenGLRenderWindow>::New();
+  parts.window->SetOwnContext(0);
+  parts.window->SetReadyForRendering(true);
+  parts.window->SetMultiSamples(0);
+  parts.window->SetFrameBlitModeToNoBlit();
+  parts.window->OpenGLInitContext();
+  parts.window->SetIsCurrent(true);
+  parts.window->SetSupportsOpenGL(1);
+  parts.window->SetMapped(true);
+  parts.window->SetSize(width_px, height_px);
+}
+
 Result<std::unique_ptr<OffscreenWindow>> OffscreenWindow::make(int width_px, int height_px) {
-  if (width_px < 16 || height_px < 16 || width_px > 16384 || height_px > 16384)
-    return fail("a picture of " + std::to_string(width_px) + " x " + std::to_string(height_px) +
-                    " pixels cannot be rendered",
-                "size", "choose 16 to 16384 pixels for either side");
+  if (Status status = checkSize(width_px, height_px); !status) return fail(status.error());
   auto parts = std::make_unique<Parts>();
   if (Status status = parts->makeContext(); !status) return fail(status.error());
-  parts->window = vtkSmartPointer<vtkGenericOpenGLRenderWindow>::New();
-  parts->window->SetOwnContext(0);
-  parts->window->SetReadyForRendering(true);
-  parts->window->SetMultiSamples(0);
-  parts->window->SetFrameBlitModeToNoBlit();
-  parts->window->OpenGLInitContext();
-  parts->window->SetIsCurrent(true);
-  parts->window->SetSupportsOpenGL(1);
-  parts->window->SetMapped(true);
-  parts->window->SetSize(width_px, height_px);
+  makeWindow(*parts, width_px, height_px);
+  return std::unique_ptr<OffscreenWindow>(new OffscreenWindow(std::move(parts)));
+}
+
+Result<std::unique_ptr<OffscreenWindow>> OffscreenWindow::inCurrentContext(int width_px, int height_px) {
+  if (Status status = checkSize(width_px, height_px); !status) return fail(status.error());
+  auto parts = std::make_unique<Parts>();
+  makeWindow(*parts, width_px, height_px);
   return std::unique_ptr<OffscreenWindow>(new OffscreenWindow(std::move(parts)));
 }
 

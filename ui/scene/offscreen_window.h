@@ -16,6 +16,9 @@ class OffscreenWindow {
  public:
   // Error: no OpenGL 3.2 to be had from EGL, or a size out of 16 to 16384.
   static Result<std::unique_ptr<OffscreenWindow>> make(int width_px, int height_px);
+  // The same in the OpenGL context that is current, whosever it is; it must be current again whenever the
+  // window is used, and when it goes.
+  static Result<std::unique_ptr<OffscreenWindow>> inCurrentContext(int width_px, int height_px);
   ~OffscreenWindow();
 
   vtkRenderWindow& window();
@@ -24,6 +27,8 @@ class OffscreenWindow {
 
  private:
   struct Parts;
+  static Status checkSize(int width_px, int height_px);
+  static void makeWindow(Parts& parts, int width_px, int height_px);
   explicit OffscreenWindow(std::unique_ptr<Parts> parts);
   std::unique_ptr<Parts> parts_;
 };

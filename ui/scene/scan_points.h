@@ -12,16 +12,17 @@
 
 namespace tiltmap::ui {
 
-enum class SceneColouring { Scan, Height, Range, Intensity, Normal, Age };
-inline constexpr SceneColouring kSceneColourings[] = {SceneColouring::Scan,   SceneColouring::Height,
-                                                      SceneColouring::Range,  SceneColouring::Intensity,
-                                                      SceneColouring::Normal, SceneColouring::Age};
-// "scan", "height", "range", "intensity", "normal", "age": for flags.
+enum class SceneColouring { Scan, Height, Range, Intensity, Normal, Age, Residual };
+inline constexpr SceneColouring kSceneColourings[] = {
+    SceneColouring::Scan,   SceneColouring::Height, SceneColouring::Range,   SceneColouring::Intensity,
+    SceneColouring::Normal, SceneColouring::Age,    SceneColouring::Residual};
+// "scan", "height", "range", "intensity", "normal", "age", "residual": for flags.
 const std::string& sceneColouringName(SceneColouring colouring);
 Result<SceneColouring> parseSceneColouring(const std::string& name);
 std::string sceneColouringTitle(SceneColouring colouring);  // "Height (m)"
 
-// Scan frame, metres; parallel arrays.
+// Scan frame, metres; parallel arrays. In an order of which every beginning is spread evenly over the
+// surfaces that were seen: the first thousand points are a coarse picture of all of them.
 struct ScanPoints {
   ScanId scan = 0;
   std::int64_t matrix = 0;  // identity of what they were made from
@@ -33,7 +34,11 @@ struct ScanPoints {
   std::vector<float> intensity;     // empty, or one a point
   std::vector<float> normal;        // three a point; filled on demand
   std::vector<double> line_time_s;  // empty, or one a row
+  std::vector<double> density;      // at 257 places from the first point to the last, see countAtDensity()
   std::size_t size() const { return cell.size(); }
+  // How many of the first points make so many a square metre (of a surface that faces the scanner; in units
+  // that are the same for all scans of one kind). Drawing several scans to one density spreads them alike.
+  std::size_t countAtDensity(double density) const;
 };
 
 inline constexpr double kReducedDistance_m = 0.25;  // neighbours of a line nearer than this become one
@@ -48,6 +53,9 @@ struct ColourRange {
   double high = 1.0;
   bool known = false;  // something has a value
 };
+
+// Orders the points evenly and fills in `density`. What scanPointsOf() does last.
+void orderEvenly(ScanPoints& points, bool is_matrix, bool is_regular);
 
 // Values of the colouring, one a point (heights in the world frame); empty where it has none. Age: seconds
 // since `first_time_s`, or `index`, the scan's place in the survey, where that is not known.

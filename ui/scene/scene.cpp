@@ -18,14 +18,20 @@ Scene::Scene() : parts_(std::make_unique<Parts>()) {
   p.front->InteractiveOff();
   p.front->SetActiveCamera(p.renderer->GetActiveCamera());
   p.overlay = std::make_unique<SceneOverlay>(*p.front);
-  for (SceneLines* lines : {&p.grid, &p.path}) p.renderer->AddActor(lines->actor);
-  for (SceneLines* lines : {&p.hovered, &p.picked}) p.front->AddActor(lines->actor);
+  p.renderer->GetCullers()->RemoveAllItems();  // these would ask the points for bounds, and gain nothing
+  p.renderer->AddActor(p.grid.actor);
+  p.renderer->AddViewProp(p.layer);
+  p.layer->setSideActors({p.paths[0].actor, p.paths[1].actor});
+  p.layer->setBudget(p.budget);
+  for (SceneLines* lines : {&p.hovered, &p.picked, &p.box, &p.measure}) p.front->AddActor(lines->actor);
   setColours(SceneColours::dark());
   setView(SceneView::Iso);
 }
 
 Scene::~Scene() {
   detach();
+  parts_->layer->setSideActors({});  // these go before the renderer does
+  parts_->renderer->RemoveAllViewProps();
 }
 
 void Scene::attach(vtkRenderWindow& window) {
@@ -60,7 +66,6 @@ std::vector<std::string> Scene::show(const SnapshotPtr& snapshot, Stage stage) {
   p.stage = stage;
   std::vector<std::string> troubles;
   const std::size_t count = snapshot ? snapshot->scans().size() : 0;
-  p.stops = snapshot ? snapshot->filledPoses(stage) : std::vector<Pose>();
   std::vector<std::unique_ptr<SceneCloud>> made(count);
   std::vector<std::string> trouble(count);
   parallelFor(count, 0, [&](std::size_t i) {
@@ -77,6 +82,7 @@ std::vector<std::string> Scene::show(const SnapshotPtr& snapshot, Stage stage) {
     }
     made[i] = std::make_unique<SceneCloud>();
     made[i]->points = std::move(*points);
+    made[i]->encircle();
   });
   for (std::size_t i = 0; i < count; ++i) {
     if (!trouble[i].empty()) {
@@ -84,28 +90,12 @@ std::vector<std::string> Scene::show(const SnapshotPtr& snapshot, Stage stage) {
       continue;
     }
     const ScanEntry& scan = snapshot->scans()[i];
-    if (!made[i]) {
-      made[i] = std::move(before[scan.id]);
-    } else {
-      made[i]->all.setPoints(made[i]->points.xyz, true);
-      p.renderer->AddActor(made[i]->all.actor);
-      p.renderer->AddActor(made[i]->few.actor);
-    }
-    SceneCloud& cloud = *made[i];
-    cloud.index = i;
-    cloud.world_from_scan = p.stops[i];
-    cloud.visible = !p.is_visible || p.is_visible(scan.id);
-    const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix = p.stops[i].matrix();
-    vtkNew<vtkMatrix4x4> placed;
-    placed->DeepCopy(matrix.data());
-    for (PointDrawing* drawing : {&cloud.all, &cloud.few}) drawing->actor->SetUserMatrix(placed);
+    if (!made[i]) made[i] = std::move(before[scan.id]);
+    made[i]->index = i;
+    made[i]->batch.visible = !p.is_visible || p.is_visible(scan.id);
     p.clouds.push_back(std::move(made[i]));
   }
-  for (auto& [id, cloud] : before)
-    if (cloud) {
-      p.renderer->RemoveActor(cloud->all.actor);
-      p.renderer->RemoveActor(cloud->few.actor);
-    }
+  p.placeClouds();
   p.colourAll();
   p.placeLines();
   p.showActors();
@@ -120,7 +110,7 @@ std::vector<std::string> Scene::setSettings(const SceneSettings& settings) {
   const SceneSettings before = std::exchange(p.settings, settings);
   if (before.reduced != settings.reduced) return show(p.snapshot, p.stage);
   if (before.colouring != settings.colouring) p.colourAll();
-  p.placeLines();
+  if (before.path != settings.path || before.grid != settings.grid) p.placeLines();
   p.showActors();
   return {};
 }
@@ -137,38 +127,86 @@ void Scene::setColours(const SceneColours& colours) {
   p.renderer->SetBackground(colours.bottom.r / 255.0, colours.bottom.g / 255.0, colours.bottom.b / 255.0);
   p.colourAll();
   p.placeLines();
+  p.placeBox();
+  setMeasured(std::vector<Vector3d>(p.measured));
 }
 
 void Scene::setVisible(const std::function<bool(ScanId)>& visible) {
   Parts& p = *parts_;
   p.is_visible = visible;
-  for (const auto& cloud : p.clouds) cloud->visible = !visible || visible(cloud->points.scan);
-  p.few_stale = true;
+  for (const auto& cloud : p.clouds) cloud->batch.visible = !visible || visible(cloud->points.scan);
+  ++p.content;
   if (p.settings.colouring != SceneColouring::Scan) p.colourAll();
   p.showActors();
+}
+
+void Scene::setResiduals(const ScanResiduals& now, const ScanResiduals& before) {
+  parts_->residuals = {now, before};
+  if (parts_->settings.colouring == SceneColouring::Residual) parts_->colourAll();
 }
 
 void Scene::setPixelRatio(double ratio) {
   if (ratio == parts_->pixel_ratio) return;
   parts_->pixel_ratio = ratio;
   parts_->placeLines();
+  parts_->placeBox();
   parts_->showActors();
   markHovered(parts_->hovered_cell);
   markPicked(parts_->picked_cell);
+  setMeasured(std::vector<Vector3d>(parts_->measured));
+}
+
+double Scene::pixelRatio() const {
+  return parts_->pixel_ratio;
 }
 
 void Scene::setMoving(bool moving) {
   parts_->moving = moving;
-  if (moving) parts_->fillFew();
-  parts_->showActors();
+  parts_->layer->setMoving(moving);
+}
+
+bool Scene::isMoving() const {
+  return parts_->moving;
+}
+
+void Scene::setMovingPoints(std::size_t points) {
+  parts_->budget = std::max(points, kMovingPoints);
+  parts_->layer->setBudget(parts_->budget);
+}
+
+void Scene::setGradual(bool gradual) {
+  parts_->layer->setGradual(gradual);
+}
+
+bool Scene::isRefined() const {
+  return parts_->clouds.empty() || parts_->layer->isComplete();
 }
 
 std::size_t Scene::pointsDrawn() const {
+  const Parts& p = *parts_;
   std::size_t count = 0;
-  for (const auto& cloud : parts_->clouds)
-    if (cloud->visible)
-      count += static_cast<std::size_t>((parts_->moving ? cloud->few : cloud->all).data->GetNumberOfPoints());
+  if (p.moving) {
+    parts_->lookAtPoints();
+    for (const std::size_t n : p.layer->fewOf(p.sideAt(p.size().x()))) count += n;
+    return count;
+  }
+  for (const auto& cloud : p.clouds)
+    if (cloud->batch.visible) count += cloud->points.size();
   return count;
+}
+
+std::vector<Vector3d> Scene::movingPoints() const {
+  const Parts& p = *parts_;
+  parts_->lookAtPoints();
+  const int side = p.sideAt(p.size().x());
+  const std::vector<std::size_t> counts = p.layer->fewOf(side);
+  std::vector<Vector3d> points;
+  for (std::size_t k = 0; k < counts.size(); ++k)
+    for (std::size_t i = 0; i < counts[k]; ++i) {
+      const Vector3d point = p.clouds[k]->at(i, side);
+      if (!p.slice || p.slice->contains(point)) points.push_back(point);
+    }
+  return points;
 }
 
 void Scene::markHovered(const std::optional<CellPlace>& cell) {
@@ -185,7 +223,7 @@ void Scene::prepare() {
   Parts& p = *parts_;
   if (p.fitted && p.size() != p.fitted_size) p.fitNow();
   p.applyCamera();
-  p.renderer->ResetCameraClippingRange();
+  p.lookAtPoints();
   OverlayContents contents;
   contents.text = p.colours.text;
   contents.ground = p.colours.bottom;
@@ -197,16 +235,7 @@ void Scene::prepare() {
   contents.up = p.camera.trueUp();
   if (p.camera.orthographic && !p.clouds.empty()) contents.scale_m_per_px = metresPerPixel();
   if (p.settings.grid && p.grid_m > 0.0) contents.grid = "Grid " + shortestReal(p.grid_m) + " m";
-  const bool bar =
-      p.settings.colouring != SceneColouring::Scan && p.settings.colouring != SceneColouring::Normal;
-  if (bar && p.range.known) {
-    contents.bar_title = sceneColouringTitle(p.settings.colouring);
-    const int places = p.range.high - p.range.low < 20.0 ? 1 : 0;
-    contents.bar_low = fixedReal(p.range.low, places);
-    contents.bar_high = fixedReal(p.range.high, places);
-    contents.low_lightness = p.lowLightness();
-    contents.high_lightness = p.highLightness();
-  }
+  p.writeOver(contents, *this);
   p.overlay->show(contents);
   p.thinNumbers(*this);
 }

@@ -14,6 +14,7 @@
 #include "core/products/colour.h"
 #include "core/project/project_snapshot.h"
 #include "ui/models/selection.h"
+#include "ui/scene/point_box.h"
 #include "ui/scene/scan_points.h"
 
 class vtkRenderer;
@@ -36,6 +37,11 @@ struct SceneColours {
   bool operator==(const SceneColours&) const = default;
 };
 
+enum class SceneCompare { Off, Wipe, Blink };
+
+// One a cell of the scan's matrix; NaN: none.
+using ScanResiduals = std::map<ScanId, std::shared_ptr<const std::vector<float>>>;
+
 struct SceneSettings {
   SceneColouring colouring = SceneColouring::Scan;
   double point_px = 2.0;  // logical pixels
@@ -43,11 +49,19 @@ struct SceneSettings {
   bool path = true;
   bool grid = true;
   bool axes = true;
+  bool shaded = false;  // by depth: edges and hollows stand out
   bool operator==(const SceneSettings&) const = default;
 };
 
-// How many points are drawn while the camera moves.
+// At least so many points are drawn while the camera moves, if there are as many.
 inline constexpr std::size_t kMovingPoints = 52000;
+
+// Where a box that cuts out a part of the scene can be taken hold of: the middle of a side.
+struct SliceHandle {
+  int axis = 0;
+  bool high = false;
+  bool operator==(const SliceHandle&) const = default;
+};
 
 // On one thread, that of the window it draws in.
 class Scene {
@@ -69,6 +83,33 @@ class Scene {
   void setColours(const SceneColours& colours);
   void setVisible(const std::function<bool(ScanId)>& visible);
   void setPixelRatio(double device_px_per_logical_px);
+  double pixelRatio() const;
+  // What the colouring Residual shows, for the stage and for the one it is compared with.
+  void setResiduals(const ScanResiduals& now, const ScanResiduals& before = {});
+
+  // The same scans as another stage places them: left of a divider, or in turn (setShowsBefore).
+  void setCompare(SceneCompare how, Stage before);
+  SceneCompare compare() const;
+  Stage before() const;
+  void setDivider(double share);  // of the width, 0 to 1
+  double divider() const;
+  void setShowsBefore(bool before);
+  bool showsBefore() const;
+
+  // Only points within are drawn, picked and framed. World frame, upright.
+  void setSlice(const std::optional<PointBox>& box);
+  const std::optional<PointBox>& slice() const;
+  // Around most of the visible points; nothing where there are none.
+  std::optional<PointBox> extent() const;
+  double scannerHeight() const;  // median over the stops, world frame
+  std::optional<SliceHandle> sliceHandleAt(const Eigen::Vector2d& pixel, double radius_px) const;
+  std::optional<Eigen::Vector2d> pixelOf(const SliceHandle& handle) const;
+  // Moves a side of the box with the pointer; sides never pass one another.
+  void dragSlice(const SliceHandle& handle, const Eigen::Vector2d& by_px);
+
+  // None, one or two places in the world; between two a line with its length.
+  void setMeasured(const std::vector<Eigen::Vector3d>& places);
+  const std::vector<Eigen::Vector3d>& measured() const;
 
   // Camera. World frame: x right, y forward, z up; "front" looks along +y, "right" from +x.
   void setView(SceneView view);                  // of everything that is visible
@@ -82,14 +123,24 @@ class Scene {
   void zoom(double factor);                     // above 1: closer to the pivot
   Eigen::Vector2d pixelOf(const Eigen::Vector3d& world) const;
   double metresPerPixel() const;  // at what the camera looks at
-  // Few points while something moves.
+  // Few points while something moves, spread evenly over what is seen; never less than kMovingPoints.
   void setMoving(bool moving);
+  bool isMoving() const;
+  void setMovingPoints(std::size_t points);
+  // How many the picture will have at last, or while moving has.
   std::size_t pointsDrawn() const;
+  // Gradually: every render adds as many points as fit into some 40 ms, until isRefined(). Else all at once.
+  void setGradual(bool gradual);
+  bool isRefined() const;
+  // World frame; what the picture shows while moving. For tests and measurements.
+  std::vector<Eigen::Vector3d> movingPoints() const;
 
   // The beam whose point is drawn nearest to the pixel, within radius_px; of several that overlap the
   // nearest to the camera.
   std::optional<CellPlace> pick(const Eigen::Vector2d& pixel, double radius_px) const;
   std::optional<Eigen::Vector3d> worldPoint(const CellPlace& cell) const;
+  // The same where this pixel shows it: in a comparison the stages place it differently.
+  std::optional<Eigen::Vector3d> shownPoint(const CellPlace& cell, const Eigen::Vector2d& pixel) const;
   // A line from the scanner to the point, and a ring around it; nothing takes it away.
   void markHovered(const std::optional<CellPlace>& cell);
   void markPicked(const std::optional<CellPlace>& cell);

@@ -127,6 +127,15 @@ void SceneOverlay::show(const OverlayContents& contents) {
             Vector2d(contents.width - kMargin * contents.pixel_ratio,
                      (contents.scale_m_per_px > 0.0 ? 56.0 : 18.0) * contents.pixel_ratio),
             1, contents.text, 12.0 * contents.pixel_ratio);
+    if (contents.divider) drawDivider(contents);
+    if (!contents.corner.empty())
+      write(contents.corner,
+            Vector2d(contents.width - kMargin * contents.pixel_ratio,
+                     contents.height - 18.0 * contents.pixel_ratio),
+            1, contents.text, 13.0 * contents.pixel_ratio);
+    drawHandles(contents);
+    for (const OverlayLabel& label : contents.labels)
+      write(label.text, label.pixel, 0, label.colour, 13.0 * contents.pixel_ratio);
   }
   finish(2.0 * contents.pixel_ratio);
 }
@@ -165,10 +174,33 @@ void SceneOverlay::drawBar(const OverlayContents& contents) {
   constexpr int kSteps = 64;
   for (int i = 0; i < kSteps; ++i)
     box(low + Vector2d(0.0, height * i / kSteps), low + Vector2d(width, height * (i + 1) / kSteps),
-        evenColour((i + 0.5) / kSteps, contents.low_lightness, contents.high_lightness));
+        contents.bar_is_signed
+            ? signedColour(2.0 * (i + 0.5) / kSteps - 1.0, contents.middle_lightness)
+            : evenColour((i + 0.5) / kSteps, contents.low_lightness, contents.high_lightness));
   write(contents.bar_title, Vector2d(kMargin * k, contents.height - 18.0 * k), -1, contents.text, 13.0 * k);
   write(contents.bar_low, low + Vector2d(width + 8.0 * k, 5.0 * k), -1, contents.text, 12.0 * k);
   write(contents.bar_high, low + Vector2d(width + 8.0 * k, height - 5.0 * k), -1, contents.text, 12.0 * k);
+}
+
+void SceneOverlay::drawDivider(const OverlayContents& contents) {
+  const double k = contents.pixel_ratio;
+  const double x = std::round(*contents.divider * contents.width), middle = 0.5 * contents.height;
+  line({x, 0.0}, {x, contents.height * 1.0}, contents.divider_colour);
+  // A grip, so that it is seen to be something to take hold of.
+  box({x - 5.0 * k, middle - 16.0 * k}, {x + 5.0 * k, middle + 16.0 * k}, contents.divider_colour);
+  for (const double at : {-1.5 * k, 1.5 * k})
+    box({x + at - 0.5 * k, middle - 9.0 * k}, {x + at + 0.5 * k, middle + 9.0 * k}, ground_);
+  const double y = contents.height - 18.0 * k;
+  write(contents.left_of_divider, {x - 12.0 * k, y}, 1, contents.text, 13.0 * k);
+  write(contents.right_of_divider, {x + 12.0 * k, y}, -1, contents.text, 13.0 * k);
+}
+
+void SceneOverlay::drawHandles(const OverlayContents& contents) {
+  const double k = contents.pixel_ratio;
+  for (const auto& [at, colour] : contents.handles) {
+    box(at - Vector2d(6.0 * k, 6.0 * k), at + Vector2d(6.0 * k, 6.0 * k), ground_);
+    box(at - Vector2d(4.5 * k, 4.5 * k), at + Vector2d(4.5 * k, 4.5 * k), colour);
+  }
 }
 
 }  // namespace tiltmap::ui

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 #include <vtkNew.h>
 #include <vtkSmartPointer.h>
@@ -17,6 +19,13 @@ class vtkTextActor;
 
 namespace tiltmap::ui {
 
+// A text with its ground, the middle of its lower edge at a pixel.
+struct OverlayLabel {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  std::string text;
+  Rgb colour{255, 255, 255};
+};
+
 struct OverlayContents {
   Rgb text{255, 255, 255};
   Rgb ground{0, 0, 0};  // shines through behind text
@@ -28,7 +37,15 @@ struct OverlayContents {
   std::string bar_title;        // empty: no colour bar
   std::string bar_low, bar_high;
   double low_lightness = 0.38, high_lightness = 0.92;  // of evenColour
+  bool bar_is_signed = false;                          // signedColour, zero in the middle
+  double middle_lightness = 0.86;                      // of signedColour
   std::string grid;                                    // "Grid 2 m"
+  std::vector<OverlayLabel> labels;
+  std::optional<double> divider;  // share of the width
+  Rgb divider_colour{255, 255, 255};
+  std::string left_of_divider, right_of_divider;
+  std::string corner;  // top right: what is being shown in turn
+  std::vector<std::pair<Eigen::Vector2d, Rgb>> handles;
 };
 
 class SceneOverlay {
@@ -49,6 +66,8 @@ class SceneOverlay {
   void drawTriad(const OverlayContents& contents);
   void drawScale(const OverlayContents& contents);
   void drawBar(const OverlayContents& contents);
+  void drawDivider(const OverlayContents& contents);
+  void drawHandles(const OverlayContents& contents);
 
   struct Shapes;
   vtkRenderer& renderer_;

@@ -7,17 +7,20 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // The eight corners of a box around most points, and the stops.
-std::vector<Vector3d> Scene::Parts::extentPoints(const std::vector<ScanId>& scans) const {
+std::vector<Vector3d> Scene::Parts::extentPoints(const std::vector<ScanId>& scans,
+                                                 const PointBox* within) const {
   std::array<std::vector<double>, 3> along;
   for (const auto& cloud : clouds) {
-    if (scans.empty() ? !cloud->visible
+    if (scans.empty() ? !cloud->batch.visible
                       : std::find(scans.begin(), scans.end(), cloud->points.scan) == scans.end())
       continue;
     for (const std::uint32_t i : evenlyStrided(cloud->points.size(), 2000)) {
       const Vector3d p = cloud->at(i);
+      if (within && !within->contains(p)) continue;
       for (std::size_t axis = 0; axis < 3; ++axis) along[axis].push_back(p[static_cast<int>(axis)]);
     }
-    const Vector3d stop = cloud->world_from_scan.translation();
+    const Vector3d stop = cloud->pose().translation();
+    if (within) continue;
     for (std::size_t axis = 0; axis < 3; ++axis) along[axis].push_back(stop[static_cast<int>(axis)]);
   }
   if (along[0].empty()) return {};
@@ -36,34 +39,79 @@ std::vector<Vector3d> Scene::Parts::extentPoints(const std::vector<ScanId>& scan
   return corners;
 }
 
-void Scene::Parts::colour(SceneCloud& cloud, const std::vector<float>& values) {
-  cloud.colours.clear();
+void SceneCloud::encircle() {
+  Eigen::AlignedBox3f box;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    box.extend(Eigen::Map<const Eigen::Vector3f>(points.xyz.data() + 3 * i));
+  if (box.isEmpty()) return;
+  middle = box.center().cast<double>();
+  radius_m = 0.5 * static_cast<double>(box.diagonal().norm());
+}
+
+// Where each stage puts the scans.
+void Scene::Parts::placeClouds() {
+  const bool both = compare != SceneCompare::Off;
+  stops[0] = snapshot ? snapshot->filledPoses(stage) : std::vector<Pose>();
+  stops[1] = both && snapshot ? snapshot->filledPoses(before) : std::vector<Pose>();
+  std::vector<PointBatch*> batches;
+  for (const auto& cloud : clouds) {
+    cloud->batch.world_from_scan[0] = stops[0][cloud->index];
+    cloud->batch.world_from_scan[1] = stops[both ? 1 : 0][cloud->index];
+    cloud->batch.ink = inkOf(*cloud);
+    batches.push_back(&cloud->batch);
+  }
+  layer->setBatches(std::move(batches));
+  ++content;
+}
+
+std::vector<float> Scene::Parts::valuesOf(const SceneCloud& cloud, int side,
+                                          std::optional<double> first_time_s) const {
+  if (settings.colouring != SceneColouring::Residual)
+    return colourValues(cloud.points, settings.colouring, cloud.pose(side), cloud.index, first_time_s);
+  const auto& known = residuals[static_cast<std::size_t>(side)];
+  const auto found = known.find(cloud.points.scan);
+  std::vector<float> values;
+  if (found == known.end() || !found->second) return values;
+  values.reserve(cloud.points.size());
+  for (const std::uint32_t cell : cloud.points.cell)
+    values.push_back(cell < found->second->size() ? (*found->second)[cell]
+                                                  : std::numeric_limits<float>::quiet_NaN());
+  return values;
+}
+
+void Scene::Parts::colour(SceneCloud& cloud, int side, const std::vector<float>& values) {
+  std::vector<Rgb>& result = cloud.batch.colours[static_cast<std::size_t>(side)];
+  result.clear();
   if (settings.colouring == SceneColouring::Normal) {
-    const Eigen::Matrix3d rotation = cloud.world_from_scan.rotation();
-    cloud.colours.reserve(cloud.points.size());
+    const Eigen::Matrix3d rotation = cloud.pose(side).rotation();
+    result.reserve(cloud.points.size());
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
       const Vector3d n = rotation * Vector3d(cloud.points.normal[3 * i], cloud.points.normal[3 * i + 1],
                                              cloud.points.normal[3 * i + 2]);
       const Vector3d c = 127.5 * (n.array() + 1.0);
-      cloud.colours.push_back(n.isZero() ? colours.no_data
-                                         : Rgb{static_cast<std::uint8_t>(std::lround(c.x())),
-                                               static_cast<std::uint8_t>(std::lround(c.y())),
-                                               static_cast<std::uint8_t>(std::lround(c.z()))});
+      result.push_back(n.isZero() ? colours.no_data
+                                  : Rgb{static_cast<std::uint8_t>(std::lround(c.x())),
+                                        static_cast<std::uint8_t>(std::lround(c.y())),
+                                        static_cast<std::uint8_t>(std::lround(c.z()))});
     }
   } else if (settings.colouring != SceneColouring::Scan) {
     // A table: a colour through OKLab a point would take a second for a large project.
     std::array<Rgb, 256> table;
-    for (std::size_t k = 0; k < table.size(); ++k)
-      table[k] = evenColour(static_cast<double>(k) / 255.0, lowLightness(), highLightness());
+    for (std::size_t k = 0; k < table.size(); ++k) {
+      const double t = static_cast<double>(k) / 255.0;
+      table[k] = settings.colouring == SceneColouring::Residual
+                     ? signedColour(2.0 * t - 1.0, middleLightness())
+                     : evenColour(t, lowLightness(), highLightness());
+    }
     const double per_value = 255.0 / (range.high - range.low);
-    cloud.colours.assign(cloud.points.size(), colours.no_data);
+    result.assign(cloud.points.size(), colours.no_data);
     for (std::size_t i = 0; i < values.size(); ++i)
       if (std::isfinite(values[i]))
-        cloud.colours[i] =
+        result[i] =
             table[static_cast<std::size_t>(std::clamp((values[i] - range.low) * per_value, 0.0, 255.0))];
+  } else {
+    std::vector<Rgb>().swap(result);
   }
-  cloud.all.setColours(cloud.colours);
-  for (PointDrawing* drawing : {&cloud.all, &cloud.few}) paint(*drawing->actor, inkOfScan(cloud.index));
 }
 
 void Scene::Parts::colourAll() {
@@ -76,33 +124,46 @@ void Scene::Parts::colourAll() {
     for (const double t : cloud->points.line_time_s)
       if (std::isfinite(t)) first_time = std::min(first_time.value_or(t), t);
   }
-  std::vector<std::vector<float>> values(clouds.size());
+  // What depends on the poses has a colour of its own on either side of a comparison.
+  const bool by_pose = settings.colouring == SceneColouring::Height ||
+                       settings.colouring == SceneColouring::Normal ||
+                       settings.colouring == SceneColouring::Residual;
+  const int sides = compare != SceneCompare::Off && by_pose ? 2 : 1;
+  std::vector<std::array<std::vector<float>, 2>> values(clouds.size());
+  if (settings.colouring == SceneColouring::Normal)
+    parallelFor(clouds.size(), 0,
+                [&](std::size_t k) { addNormals(clouds[k]->points, snapshot->scans()[clouds[k]->index]); });
+  parallelFor(clouds.size(), 0, [&](std::size_t k) {
+    for (int side = 0; side < sides; ++side)
+      values[k][static_cast<std::size_t>(side)] = valuesOf(*clouds[k], side, first_time);
+  });
   std::vector<float> sample;
   for (std::size_t k = 0; k < clouds.size(); ++k) {
-    SceneCloud& cloud = *clouds[k];
-    if (settings.colouring == SceneColouring::Normal)
-      addNormals(cloud.points, snapshot->scans()[cloud.index]);
-    values[k] =
-        colourValues(cloud.points, settings.colouring, cloud.world_from_scan, cloud.index, first_time);
-    if (!cloud.visible) continue;
-    for (const std::uint32_t i : evenlyStrided(values[k].size(), 20000)) sample.push_back(values[k][i]);
+    if (!clouds[k]->batch.visible) continue;
+    for (const auto& side : values[k])
+      for (const std::uint32_t i : evenlyStrided(side.size(), 20000)) sample.push_back(side[i]);
   }
   range = colourRangeOf(std::move(sample), settings.colouring);
-  for (std::size_t k = 0; k < clouds.size(); ++k) colour(*clouds[k], values[k]);
-  few_stale = true;
+  parallelFor(clouds.size(), 0, [&](std::size_t k) {
+    SceneCloud& cloud = *clouds[k];
+    cloud.batch.ink = inkOf(cloud);
+    ++cloud.batch.colours_changed;
+    cloud.batch.colours[1] = {};
+    for (int side = 0; side < sides; ++side) colour(cloud, side, values[k][static_cast<std::size_t>(side)]);
+  });
+  ++content;
 }
 
 void Scene::Parts::placeNumbers(double length_m) {
-  for (auto& number : numbers) front->RemoveViewProp(number);
+  for (auto& [stop, number] : numbers) front->RemoveViewProp(number);
   numbers.clear();
-  if (!settings.path || stops.empty()) return;
+  if (!settings.path || stops[0].empty()) return;
   // At most about forty: a crowd of numbers is no help.
-  const std::size_t step = (stops.size() + 39) / 40;
-  for (std::size_t i = 0; i < stops.size(); i += step) {
+  const std::size_t step = (stops[0].size() + 39) / 40;
+  number_height_m = 0.4 * length_m;
+  for (std::size_t i = 0; i < stops[0].size(); i += step) {
     auto number = vtkSmartPointer<vtkBillboardTextActor3D>::New();
     number->SetInput(std::to_string(i).c_str());
-    Vector3d at = stops[i].translation() + Vector3d(0, 0, 0.4 * length_m);
-    number->SetPosition(at.data());
     number->SetDisplayOffset(static_cast<int>(9 * pixel_ratio), static_cast<int>(7 * pixel_ratio));
     vtkTextProperty& style = *number->GetTextProperty();
     style.SetFontFamilyToArial();
@@ -112,28 +173,40 @@ void Scene::Parts::placeNumbers(double length_m) {
     style.SetBackgroundColor(colours.bottom.r / 255.0, colours.bottom.g / 255.0, colours.bottom.b / 255.0);
     style.SetBackgroundOpacity(0.6);  // legible over points of any colour
     front->AddViewProp(number);
-    numbers.push_back(number);
+    numbers.emplace_back(i, number);
   }
 }
 
-// Of numbers that would lie on one another the first stays.
+// Each number at the stop of the stage that is seen there; of numbers that would lie on one another the first
+// stays.
 void Scene::Parts::thinNumbers(const Scene& scene) {
   std::vector<Vector2d> taken;
-  for (const auto& number : numbers) {
-    const Vector2d place = scene.pixelOf(Vector3d(number->GetPosition()));
-    const bool free = std::none_of(taken.begin(), taken.end(), [&](const Vector2d& other) {
-      return std::abs(other.x() - place.x()) < 20.0 * pixel_ratio &&
-             std::abs(other.y() - place.y()) < 15.0 * pixel_ratio;
-    });
-    number->SetVisibility(free);
-    if (free) taken.push_back(place);
+  const Vector3d above(0, 0, number_height_m);
+  for (const auto& [stop, number] : numbers) {
+    bool shown = false;
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+      if (stops[side].size() <= stop) continue;
+      const Vector3d at = stops[side][stop].translation() + above;
+      const Vector2d place = scene.pixelOf(at);
+      if (sideAt(place.x()) != static_cast<int>(side)) continue;
+      shown = std::none_of(taken.begin(), taken.end(), [&](const Vector2d& other) {
+        return std::abs(other.x() - place.x()) < 20.0 * pixel_ratio &&
+               std::abs(other.y() - place.y()) < 15.0 * pixel_ratio;
+      });
+      if (!shown) continue;
+      taken.push_back(place);
+      Vector3d position = at;
+      number->SetPosition(position.data());
+      break;
+    }
+    number->SetVisibility(shown);
   }
 }
 
 void Scene::Parts::placeLines() {
-  const std::vector<Vector3d> corners = extentPoints({});
+  const std::vector<Vector3d> corners = extentPoints({}, nullptr);
   grid_m = 0.0;
-  path.actor->VisibilityOff();
+  for (SceneLines& path : paths) path.actor->VisibilityOff();
   grid.actor->VisibilityOff();
   double length_m = 0.8;
   if (!corners.empty()) {
@@ -145,38 +218,52 @@ void Scene::Parts::placeLines() {
       grid.set(gridShape(low, high, grid_m), colours.grid, 1.0 * pixel_ratio);
     }
   }
-  if (settings.path && !stops.empty()) path.set(pathShape(stops, length_m), colours.text, 2.0 * pixel_ratio);
+  for (std::size_t side = 0; side < 2; ++side)
+    if (settings.path && !stops[side].empty())
+      paths[side].set(pathShape(stops[side], length_m), colours.text, 2.0 * pixel_ratio);
   placeNumbers(length_m);
 }
 
 void Scene::Parts::showActors() {
-  for (const auto& cloud : clouds) {
-    cloud->all.actor->SetVisibility(cloud->visible && !moving);
-    cloud->few.actor->SetVisibility(cloud->visible && moving);
-    for (PointDrawing* drawing : {&cloud->all, &cloud->few})
-      drawing->actor->GetProperty()->SetPointSize(static_cast<float>(settings.point_px * pixel_ratio));
-  }
+  ++content;
 }
 
-void Scene::Parts::fillFew() {
-  if (!few_stale) return;
-  few_stale = false;
-  std::size_t total = 0;
-  for (const auto& cloud : clouds) total += cloud->visible ? cloud->points.size() : 0;
-  for (const auto& cloud : clouds) {
-    if (!cloud->visible || total == 0) continue;
-    const std::size_t n = cloud->points.size();
-    const std::size_t count = std::min(n, (n * kMovingPoints + total - 1) / total);
-    std::vector<float> xyz;
-    std::vector<Rgb> chosen;
-    xyz.reserve(3 * count);
-    for (const std::uint32_t i : evenlyStrided(n, count)) {
-      for (std::size_t axis = 0; axis < 3; ++axis) xyz.push_back(cloud->points.xyz[3 * i + axis]);
-      if (!cloud->colours.empty()) chosen.push_back(cloud->colours[i]);
-    }
-    cloud->few.setPoints(xyz, false);
-    cloud->few.setColours(chosen);
-  }
+// What the points' pictures depend on, and how they are mixed. The depth of the picture comes from the points
+// and not from marks over them, so that a mark that moves does not change it.
+void Scene::Parts::lookAtPoints() {
+  applyCamera();
+  double near_m = std::numeric_limits<double>::infinity(), far_m = 0.0;
+  const auto include = [&](const Vector3d& centre, double radius) {
+    const double depth = camera.forward().dot(centre - camera.position);
+    near_m = std::min(near_m, depth - radius);
+    far_m = std::max(far_m, depth + radius);
+  };
+  for (const auto& cloud : clouds)
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}})
+      if (cloud->batch.visible && (side == 0 || compare != SceneCompare::Off))
+        include(cloud->batch.world_from_scan[side] * cloud->middle, cloud->radius_m + 1.0);
+  for (const auto& side : stops)
+    for (const Pose& stop : side) include(stop.translation(), 25.0);  // its arrow
+  if (!std::isfinite(near_m)) include(camera.focus, camera.distance());
+  far_m = std::max(far_m, 1.0);
+  near_m = std::max(near_m, 0.001 * far_m);
+  renderer->GetActiveCamera()->SetClippingRange(near_m, far_m);
+
+  PointLook look;
+  look.clip_from_world = clipFromWorld();
+  look.point_px = settings.point_px * pixel_ratio;
+  look.box = slice;
+  look.content = content;
+  layer->setLook(look);
+  PointMix mix;
+  mix.only_before = compare == SceneCompare::Blink && shows_before;
+  if (compare == SceneCompare::Wipe) mix.divider = divider;
+  mix.shaded = settings.shaded;
+  mix.shade_radius_px = pixel_ratio;
+  mix.near_m = near_m;
+  mix.far_m = far_m;
+  mix.orthographic = camera.orthographic;
+  layer->setMix(mix);
 }
 
 void Scene::Parts::applyCamera() {
@@ -191,7 +278,9 @@ void Scene::Parts::applyCamera() {
 
 void Scene::Parts::fitNow() {
   if (!fitted) return;
-  camera.fit(extentPoints(fitted_scans), fitted->forward, fitted->up, aspect());
+  std::vector<Vector3d> seen = extentPoints(fitted_scans, slice ? &*slice : nullptr);
+  if (seen.empty()) seen = extentPoints(fitted_scans, nullptr);
+  camera.fit(seen, fitted->forward, fitted->up, aspect());
   fitted_size = size();
   pivot = camera.focus;
 }
@@ -206,8 +295,9 @@ void Scene::Parts::mark(SceneLines& lines, const std::optional<CellPlace>& cell,
   if (!image || cell->row < 0 || cell->column < 0 || cell->row >= (*image)->rows() ||
       cell->column >= (*image)->columns() || !(*image)->hasPoint(cell->row, cell->column))
     return;
-  const Vector3d end = cloud->world_from_scan * cellPoint(**image, scan->geometry, cell->row, cell->column);
-  lines.set(beamShape(cloud->world_from_scan.translation(), end), colour_of_mark, 1.5 * pixel_ratio);
+  const int side = compare == SceneCompare::Blink && shows_before ? 1 : 0;
+  const Vector3d end = cloud->pose(side) * cellPoint(**image, scan->geometry, cell->row, cell->column);
+  lines.set(beamShape(cloud->pose(side).translation(), end), colour_of_mark, 1.5 * pixel_ratio);
   lines.actor->GetProperty()->SetPointSize(static_cast<float>(9.0 * pixel_ratio));
   lines.actor->GetProperty()->SetRenderPointsAsSpheres(true);
 }

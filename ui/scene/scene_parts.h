@@ -9,18 +9,15 @@
 #include <vtkActor.h>
 #include <vtkBillboardTextActor3D.h>
 #include <vtkCamera.h>
-#include <vtkCellArray.h>
-#include <vtkFloatArray.h>
+#include <vtkCullerCollection.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
-#include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkTextProperty.h>
-#include <vtkUnsignedCharArray.h>
 
 #include <Eigen/Geometry>
 
@@ -28,6 +25,7 @@
 #include "core/base/text.h"
 #include "core/products/scan_colours.h"
 #include "core/products/top_view_marks.h"
+#include "ui/scene/point_layer.h"
 #include "ui/scene/scene.h"
 #include "ui/scene/scene_camera.h"
 #include "ui/scene/scene_overlay.h"
@@ -39,73 +37,21 @@ inline void paint(vtkActor& actor, Rgb colour) {
   actor.GetProperty()->SetColor(colour.r / 255.0, colour.g / 255.0, colour.b / 255.0);
 }
 
-// One drawing of some points: all of them, or the few while moving.
-struct PointDrawing {
-  vtkNew<vtkPolyData> data;
-  vtkNew<vtkPolyDataMapper> mapper;
-  vtkNew<vtkActor> actor;
-
-  PointDrawing() {
-    mapper->SetInputData(data);
-    mapper->SetColorModeToDirectScalars();
-    mapper->StaticOn();
-    actor->SetMapper(mapper);
-    actor->GetProperty()->LightingOff();
-    actor->PickableOff();
-  }
-  // Three floats a point. `owner_stays`: the memory outlives this drawing and is not copied.
-  void setPoints(const std::vector<float>& xyz, bool owner_stays) {
-    vtkNew<vtkFloatArray> array;
-    array->SetNumberOfComponents(3);
-    const auto count = static_cast<vtkIdType>(xyz.size());
-    if (owner_stays) {
-      array->SetArray(const_cast<float*>(xyz.data()), count, 1);
-    } else {
-      array->SetNumberOfTuples(count / 3);
-      std::copy(xyz.begin(), xyz.end(), array->GetPointer(0));
-    }
-    vtkNew<vtkPoints> points;
-    points->SetData(array);
-    vtkNew<vtkCellArray> cells;
-    if (count > 0) {
-      cells->InsertNextCell(static_cast<int>(count / 3));
-      for (vtkIdType i = 0; i < count / 3; ++i) cells->InsertCellPoint(i);
-    }
-    data->Initialize();
-    data->SetPoints(points);
-    data->SetVerts(cells);
-    mapper->Modified();
-  }
-  void setColours(const std::vector<Rgb>& colours) {
-    mapper->SetScalarVisibility(!colours.empty());
-    if (colours.empty()) {
-      data->GetPointData()->SetScalars(nullptr);
-    } else {
-      vtkNew<vtkUnsignedCharArray> array;
-      array->SetNumberOfComponents(3);
-      array->SetNumberOfTuples(static_cast<vtkIdType>(colours.size()));
-      for (std::size_t i = 0; i < colours.size(); ++i) {
-        const unsigned char rgb[3] = {colours[i].r, colours[i].g, colours[i].b};
-        array->SetTypedTuple(static_cast<vtkIdType>(i), rgb);
-      }
-      data->GetPointData()->SetScalars(array);
-    }
-    data->Modified();
-    mapper->Modified();
-  }
-};
-
 struct SceneCloud {
   ScanPoints points;
-  Pose world_from_scan;
   std::size_t index = 0;
-  bool visible = true;
-  std::vector<Rgb> colours;  // empty: the scan's
-  PointDrawing all;
-  PointDrawing few;
+  PointBatch batch;
+  // A ball around the points, scan frame.
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  double radius_m = 0.0;
 
-  Eigen::Vector3d at(std::size_t i) const {
-    return world_from_scan * Eigen::Vector3d(points.xyz[3 * i], points.xyz[3 * i + 1], points.xyz[3 * i + 2]);
+  SceneCloud() { batch.points = &points; }
+  SceneCloud(const SceneCloud&) = delete;
+  SceneCloud& operator=(const SceneCloud&) = delete;
+  void encircle();
+  const Pose& pose(int side = 0) const { return batch.world_from_scan[static_cast<std::size_t>(side)]; }
+  Eigen::Vector3d at(std::size_t i, int side = 0) const {
+    return pose(side) * Eigen::Vector3d(points.xyz[3 * i], points.xyz[3 * i + 1], points.xyz[3 * i + 2]);
   }
 };
 
@@ -142,17 +88,29 @@ struct Scene::Parts {
   SceneColours colours;
   double pixel_ratio = 1.0;
   bool moving = false;
-  bool few_stale = true;
+  std::size_t budget = kMovingPoints;
+  std::uint64_t content = 0;  // counts what the pictures of the points depend on
   std::function<bool(ScanId)> is_visible;
+  std::array<ScanResiduals, 2> residuals;
   std::vector<std::unique_ptr<SceneCloud>>
-      clouds;  // in the survey's order; none for scans that cannot be read
-  std::vector<Pose> stops;
+      clouds;                              // in the survey's order; none for scans that cannot be read
+  std::array<std::vector<Pose>, 2> stops;  // by side: as shown, and what it is compared with
   ColourRange range;
   double grid_m = 0.0;
+  vtkNew<PointLayer> layer;
 
-  SceneLines path, grid, hovered, picked;
+  SceneCompare compare = SceneCompare::Off;
+  Stage before = Stage::Odometry;
+  double divider = 0.5;
+  bool shows_before = false;  // blinking
+  std::optional<PointBox> slice;
+  std::vector<Eigen::Vector3d> measured;
+
+  std::array<SceneLines, 2> paths;
+  SceneLines grid, hovered, picked, box, measure;
   std::optional<CellPlace> hovered_cell, picked_cell;
-  std::vector<vtkSmartPointer<vtkBillboardTextActor3D>> numbers;
+  std::vector<std::pair<std::size_t, vtkSmartPointer<vtkBillboardTextActor3D>>> numbers;  // stop, its number
+  double number_height_m = 0.0;
 
   SceneCamera camera;
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();
@@ -172,10 +130,11 @@ struct Scene::Parts {
   bool lightGround() const { return colours.top.r + colours.top.g + colours.top.b > 384; }
   double lowLightness() const { return lightGround() ? 0.28 : 0.38; }
   double highLightness() const { return lightGround() ? 0.80 : 0.92; }
-  Rgb inkOfScan(std::size_t index) const {
-    const Rgb colour = snapshot && index < snapshot->scans().size()
-                           ? scanColour(snapshot->scans()[index], index)
-                           : scanColour(index);
+  double middleLightness() const { return lightGround() ? 0.74 : 0.86; }
+  Rgb inkOf(const SceneCloud& cloud) const {
+    const Rgb colour = snapshot && cloud.index < snapshot->scans().size()
+                           ? scanColour(snapshot->scans()[cloud.index], cloud.index)
+                           : scanColour(cloud.index);
     return lightGround() ? mixed(colour, {0, 0, 0}, 0.25) : colour;
   }
 
@@ -184,14 +143,25 @@ struct Scene::Parts {
       if (cloud->points.scan == scan) return cloud.get();
     return nullptr;
   }
-  std::vector<Eigen::Vector3d> extentPoints(const std::vector<ScanId>& scans) const;
+  // Which side's poses a place of the picture shows.
+  int sideAt(double pixel_x) const {
+    if (compare == SceneCompare::Wipe) return pixel_x < divider * size().x() ? 1 : 0;
+    return compare == SceneCompare::Blink && shows_before ? 1 : 0;
+  }
+  std::vector<Eigen::Vector3d> extentPoints(const std::vector<ScanId>& scans, const PointBox* within) const;
   void colourAll();
-  void colour(SceneCloud& cloud, const std::vector<float>& values);
+  void colour(SceneCloud& cloud, int side, const std::vector<float>& values);
+  std::vector<float> valuesOf(const SceneCloud& cloud, int side, std::optional<double> first_time_s) const;
+  void placeClouds();
+  void placeBox();
+  std::optional<Eigen::Vector3d> pointOf(const CellPlace& cell, int side) const;
+  std::vector<Eigen::Vector3d> handles() const;
+  void lookAtPoints();
+  void writeOver(OverlayContents& contents, const Scene& scene) const;
   void placeLines();
   void placeNumbers(double length_m);
   void thinNumbers(const Scene& scene);
   void showActors();
-  void fillFew();
   void applyCamera();
   void fitNow();
   void mark(SceneLines& lines, const std::optional<CellPlace>& cell, Rgb colour);

@@ -62,6 +62,37 @@ vtkSmartPointer<vtkPolyData> gridShape(const Vector3d& low, const Vector3d& high
   return shape;
 }
 
+vtkSmartPointer<vtkPolyData> boxShape(const Vector3d& low, const Vector3d& high) {
+  auto shape = vtkSmartPointer<vtkPolyData>::New();
+  const auto points = vtkSmartPointer<vtkPoints>::New();
+  const auto lines = vtkSmartPointer<vtkCellArray>::New();
+  const auto corner = [&](int k) {
+    return Vector3d((k & 1 ? high : low).x(), (k & 2 ? high : low).y(), (k & 4 ? high : low).z());
+  };
+  for (int k = 0; k < 8; ++k)
+    for (const int bit : {1, 2, 4})
+      if (!(k & bit)) addLine(*points, *lines, corner(k), corner(k | bit));
+  shape->SetPoints(points);
+  shape->SetLines(lines);
+  return shape;
+}
+
+vtkSmartPointer<vtkPolyData> measureShape(const std::vector<Vector3d>& places) {
+  auto shape = vtkSmartPointer<vtkPolyData>::New();
+  const auto points = vtkSmartPointer<vtkPoints>::New();
+  const auto lines = vtkSmartPointer<vtkCellArray>::New(), ends = vtkSmartPointer<vtkCellArray>::New();
+  for (const Vector3d& place : places) {
+    const vtkIdType end = add(*points, place);
+    ends->InsertNextCell(1, &end);
+  }
+  const vtkIdType both[2] = {0, 1};
+  if (places.size() >= 2) lines->InsertNextCell(2, both);
+  shape->SetPoints(points);
+  shape->SetVerts(ends);
+  shape->SetLines(lines);
+  return shape;
+}
+
 vtkSmartPointer<vtkPolyData> beamShape(const Vector3d& from, const Vector3d& to) {
   auto shape = vtkSmartPointer<vtkPolyData>::New();
   const auto points = vtkSmartPointer<vtkPoints>::New();

@@ -65,7 +65,7 @@ bool Scene::isOrthographic() const {
 
 void Scene::setPivot(const Vector2d& pixel) {
   const auto cell = pick(pixel, 12.0 * parts_->pixel_ratio);
-  const auto point = cell ? worldPoint(*cell) : std::nullopt;
+  const auto point = cell ? shownPoint(*cell, pixel) : std::nullopt;
   if (point) {
     parts_->pivot = *point;
     return;
@@ -117,6 +117,7 @@ std::optional<CellPlace> Scene::pick(const Vector2d& pixel, double radius_px) co
   const SceneCamera& camera = parts_->camera;
   Eigen::RowVector4d depth_row;
   depth_row << camera.forward().transpose(), -camera.forward().dot(camera.position);
+  const int side = parts_->sideAt(pixel.x());
   struct Candidate {
     const SceneCloud* cloud;
     std::size_t point;
@@ -124,9 +125,10 @@ std::optional<CellPlace> Scene::pick(const Vector2d& pixel, double radius_px) co
   };
   std::vector<Candidate> candidates;
   for (const auto& cloud : parts_->clouds) {
-    if (!cloud->visible) continue;
-    const Eigen::Matrix4d clip_from_scan = clip_from_world * cloud->world_from_scan.matrix();
-    const Eigen::RowVector4d depth_from_scan = depth_row * cloud->world_from_scan.matrix();
+    if (!cloud->batch.visible) continue;
+    const Pose& world_from_scan = cloud->pose(side);
+    const Eigen::Matrix4d clip_from_scan = clip_from_world * world_from_scan.matrix();
+    const Eigen::RowVector4d depth_from_scan = depth_row * world_from_scan.matrix();
     const std::vector<float>& xyz = cloud->points.xyz;
     for (std::size_t i = 0; i < cloud->points.size(); ++i) {
       const Eigen::Vector4d p(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2], 1.0);
@@ -136,7 +138,8 @@ std::optional<CellPlace> Scene::pick(const Vector2d& pixel, double radius_px) co
       if (std::abs(x) > radius_px) continue;
       const double y = (clip_from_scan.row(1) * p / w).value() * half.y() + half.y() - pixel.y();
       const double away = std::hypot(x, y);
-      if (away <= radius_px) candidates.push_back({cloud.get(), i, depth_from_scan * p, away});
+      if (away > radius_px || (parts_->slice && !parts_->slice->contains(cloud->at(i, side)))) continue;
+      candidates.push_back({cloud.get(), i, depth_from_scan * p, away});
     }
   }
   if (candidates.empty()) return {};
@@ -154,15 +157,22 @@ std::optional<CellPlace> Scene::pick(const Vector2d& pixel, double radius_px) co
                    static_cast<int>(cell) % columns};
 }
 
-std::optional<Vector3d> Scene::worldPoint(const CellPlace& cell) const {
-  const SceneCloud* cloud = parts_->cloudOf(cell.scan);
+std::optional<Vector3d> Scene::Parts::pointOf(const CellPlace& cell, int side) const {
+  const SceneCloud* cloud = cloudOf(cell.scan);
   if (!cloud) return {};
   const auto wanted = static_cast<std::uint32_t>(cell.row * cloud->points.columns + cell.column);
-  // Ascending, unless a grid has mixed them.
-  const auto& cells = cloud->points.cell;
+  const auto& cells = cloud->points.cell;  // in no order
   const auto found = std::find(cells.begin(), cells.end(), wanted);
   if (found == cells.end()) return {};
-  return cloud->at(static_cast<std::size_t>(found - cells.begin()));
+  return cloud->at(static_cast<std::size_t>(found - cells.begin()), side);
+}
+
+std::optional<Vector3d> Scene::worldPoint(const CellPlace& cell) const {
+  return parts_->pointOf(cell, 0);
+}
+
+std::optional<Vector3d> Scene::shownPoint(const CellPlace& cell, const Vector2d& pixel) const {
+  return parts_->pointOf(cell, parts_->sideAt(pixel.x()));
 }
 
 }  // namespace tiltmap::ui

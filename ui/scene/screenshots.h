@@ -31,6 +31,7 @@ Result<RgbImage> mapScreenshot(const SnapshotPtr& snapshot, const MapScreenshot&
 struct DepthScreenshot : ScreenshotSettings {
   std::size_t scan = 0;
   DepthQuantity quantity = DepthQuantity::Range;
+  Stage stage = Stage::Odometry;  // of residuals
 };
 
 // The depth image of one scan with its axes.

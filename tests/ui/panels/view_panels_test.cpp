@@ -10,6 +10,7 @@
 #include "core/products/scan_colours.h"
 #include "tests/support/png_pixels.h"
 #include "tests/ui/support/window_fixture.h"
+#include "ui/models/project_words.h"
 #include "ui/panels/depth_image_panel.h"
 #include "ui/panels/view3d_panel.h"
 
@@ -103,9 +104,27 @@ TEST_F(ViewPanelsTest, ClickingACellPicksItAndArrowsMoveIt) {
 TEST_F(ViewPanelsTest, EveryQuantityIsShown) {
   for (const DepthQuantity quantity : kDepthQuantities) {
     choose("depth-quantity-0", ui::qt(depthQuantityName(quantity)));
+    // Residuals are computed in the background.
+    ASSERT_TRUE(waitUntil([&] { return depth->view(0).image() != nullptr; })) << depthQuantityName(quantity);
     ASSERT_NE(depth->view(0).image(), nullptr);
     EXPECT_EQ(depth->view(0).image()->quantity, quantity);
   }
+}
+
+TEST_F(ViewPanelsTest, ResidualsAreComputedAsideAndFollowTheStage) {
+  choose("depth-quantity-0", "residual");
+  ASSERT_TRUE(waitUntil([&] { return depth->view(0).image() != nullptr; }));
+  EXPECT_EQ(find<QDoubleSpinBox>("depth-low")->value(), -find<QDoubleSpinBox>("depth-high")->value());
+  const auto* label = find<QLabel>("depth-changed");
+  EXPECT_NE(label->text().indexOf("Residual, " + ui::stageTitle(Stage::Odometry)), -1);
+  // Poses on top of one another: everything overlaps.
+  must(workspace().session().apply(
+      posesEdit(Stage::Truth, {{id(0), Pose()}, {id(1), Pose()}, {id(2), Pose()}})));
+  workspace().display().setStage(Stage::Truth);
+  ASSERT_TRUE(waitUntil([&] {
+    return depth->view(0).image() && label->text().indexOf("Residual, " + ui::stageTitle(Stage::Truth)) != -1;
+  })) << label->text().toStdString();
+  EXPECT_FALSE(workspace().residuals().isComputing() && workspace().residuals().wanted() == 0);
 }
 
 TEST_F(ViewPanelsTest, TwoImagesShareZoomAndShift) {

@@ -1,0 +1,47 @@
+// Small controls of a panel's bars, each with a name, an accessible name and a tooltip.
+#pragma once
+
+#include <QDoubleSpinBox>
+#include <QToolButton>
+
+namespace tiltmap::ui {
+
+inline void describe(QWidget* widget, const QString& name, const QString& accessible, const QString& tip) {
+  widget->setObjectName(name);
+  widget->setAccessibleName(accessible);
+  widget->setToolTip(tip);
+}
+
+inline QToolButton* toolButton(QWidget* parent, const QString& name, const QString& text,
+                               const QString& tip) {
+  auto* button = new QToolButton(parent);
+  describe(button, name, text, tip);
+  button->setText(text);
+  button->setAutoRaise(true);
+  return button;
+}
+
+inline QToolButton* toggleButton(QWidget* parent, const QString& name, const QString& text,
+                                 const QString& tip, bool on) {
+  QToolButton* button = toolButton(parent, name, text, tip);
+  button->setCheckable(true);
+  button->setChecked(on);
+  return button;
+}
+
+// A length in metres, told when the number has been finished.
+inline QDoubleSpinBox* lengthBox(QWidget* parent, const QString& name, const QString& accessible,
+                                 const QString& tip) {
+  auto* box = new QDoubleSpinBox(parent);
+  describe(box, name, accessible, tip);
+  box->setRange(-100000.0, 100000.0);
+  box->setDecimals(2);
+  box->setSingleStep(0.1);
+  box->setSuffix(" m");
+  box->setKeyboardTracking(false);
+  box->setAlignment(Qt::AlignRight);
+  box->setFixedWidth(box->fontMetrics().horizontalAdvance("-10000.00 m") + 30);
+  return box;
+}
+
+}  // namespace tiltmap::ui
