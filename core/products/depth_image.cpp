@@ -35,7 +35,8 @@ void chooseEnds(DepthImage& image) {
   image.low = at(0.02);
   image.high = at(0.98);
   if (image.isSigned()) {
-    image.high = std::max({std::abs(image.low), std::abs(image.high), 1e-3});
+    // Three deviations, as the median tells them: trees are not to make everything else grey.
+    image.high = std::max(3.0 * 1.4826 * image.median_residual_m, 1e-3);
     image.low = -image.high;
   }
   if (!(image.high - image.low > 1e-6)) image.high = image.low + 1.0;

@@ -17,12 +17,13 @@
 #include "tests/benchmarks/pair_run.h"
 #include "tests/benchmarks/pair_sets.h"
 #include "tests/benchmarks/program_run.h"
+#include "tests/benchmarks/window_run.h"
 
 namespace tiltmap::benchmarks {
 
 namespace {
 
-const std::vector<std::string> kBlocks = {"operations", "pairs", "real", "program"};
+const std::vector<std::string> kBlocks = {"operations", "pairs", "real", "program", "window"};
 
 struct Options {
   std::vector<std::string> blocks = kBlocks;
@@ -136,6 +137,10 @@ int measure(const Options& options, std::pair<int, int> seeds) {
   }
   if (blocks.contains("program"))
     addProgramRows(table, options.program, options.scratch, options.rounds, tell);
+  if (blocks.contains("window"))
+    kept = addWindowRows(table, TILTMAP_WINDOW_BENCHMARK, options.program,
+                         std::string(options.scratch) + "-window", tell) &&
+           kept;
   table.heading.push_back("load      " + loadAverage() + " at the end");
   if (options.json)
     std::cout << table.json().dump(2) << '\n';

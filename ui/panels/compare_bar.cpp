@@ -55,8 +55,10 @@ void CompareBar::setStages(const SnapshotPtr& snapshot, Stage shown) {
     if (snapshot)
       for (const Stage stage : snapshot->stages())
         if (stage != shown) before_->addItem(stageTitle(stage), qt(stageName(stage)));
+    // What one chose; at first where registration began.
     const int again = before_->findData(chosen);
-    if (again >= 0) before_->setCurrentIndex(again);
+    const int odometry = before_->findData(qt(stageName(Stage::Odometry)));
+    before_->setCurrentIndex(again >= 0 ? again : std::max(0, odometry));
   }
   apply();
 }

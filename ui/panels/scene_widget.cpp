@@ -7,9 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <vtkGenericOpenGLRenderWindow.h>
-#include <vtkRenderWindowInteractor.h>
-
-#include "ui/scene/offscreen_window.h"
+#include <vtkOpenGLState.h>
 
 #include "ui/scene/offscreen_window.h"
 
@@ -37,7 +35,6 @@ SceneWidget::SceneWidget(Scene& scene, QWidget* parent)
   setRenderWindow(window_.Get());
   // VTK's own handling of mouse and keys stays out: turning keeps z upright and goes about what was clicked.
   setEnableHiDPI(false);
-  if (interactor()) interactor()->SetInteractorStyle(nullptr);
   scene_.attach(*window_);
   scene_.setGradual(true);
   setFocusPolicy(Qt::StrongFocus);
@@ -102,7 +99,13 @@ void SceneWidget::paintGL() {
     window_->SetSize(width_px, height_px);
   scene_.prepare();
   const auto begin = std::chrono::steady_clock::now();
+  // Qt has drawn since and left OpenGL as it likes; what VTK remembers of it is no longer so.
+  vtkOpenGLState& state = *window_->GetState();
+  state.Reset();
+  state.Push();
+  state.vtkglDepthFunc(0x0203);  // GL_LEQUAL, as VTK expects; Qt sets GL_LESS
   window_->Render();
+  state.Pop();
   if (scene_.isMoving()) {
     window_->WaitForCompletion();
     adaptMovingPoints(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());

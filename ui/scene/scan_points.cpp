@@ -186,6 +186,14 @@ std::vector<float> colourValues(const ScanPoints& points, SceneColouring colouri
 ColourRange colourRangeOf(std::vector<float> values, SceneColouring colouring) {
   std::erase_if(values, [](float v) { return !std::isfinite(v); });
   if (values.empty()) return {};
+  if (colouring == SceneColouring::Residual) {
+    // Three deviations, as the median tells them: trees are not to make everything else grey.
+    for (float& v : values) v = std::abs(v);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    const double high = std::max(3.0 * 1.4826 * static_cast<double>(*middle), 1e-3);
+    return {-high, high, true};
+  }
   const double share = colouring == SceneColouring::Age ? 0.0 : 0.02;
   const auto at = [&](double s) {
     const auto k = static_cast<std::ptrdiff_t>(s * static_cast<double>(values.size() - 1));
@@ -193,10 +201,6 @@ ColourRange colourRangeOf(std::vector<float> values, SceneColouring colouring) {
     return static_cast<double>(values[static_cast<std::size_t>(k)]);
   };
   ColourRange range{at(share), at(1.0 - share), true};
-  if (colouring == SceneColouring::Residual) {
-    range.high = std::max({std::abs(range.low), std::abs(range.high), 1e-3});
-    range.low = -range.high;
-  }
   if (!(range.high - range.low > 1e-6)) range.high = range.low + 1.0;
   return range;
 }

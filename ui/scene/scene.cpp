@@ -1,3 +1,8 @@
+#include <vtkCallbackCommand.h>
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLState.h>
+#include <vtk_glew.h>
+
 #include "ui/scene/scene_parts.h"
 
 namespace tiltmap::ui {
@@ -9,6 +14,16 @@ namespace {
 
 constexpr Rgb kHoverColour{255, 170, 40};
 constexpr Rgb kPickColour{255, 90, 200};
+
+// Making a context current may change its viewport (Qt's platform without a screen sets one pixel), and VTK
+// makes it current in the middle of drawing without noticing that. What it believes is put back.
+void keepViewport(vtkObject* caller, unsigned long, void*, void*) {
+  auto* window = vtkOpenGLRenderWindow::SafeDownCast(caller);
+  if (!window) return;
+  int viewport[4];
+  window->GetState()->vtkglGetIntegerv(GL_VIEWPORT, viewport);
+  glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
+}
 
 }  // namespace
 
@@ -37,6 +52,9 @@ Scene::~Scene() {
 void Scene::attach(vtkRenderWindow& window) {
   detach();
   parts_->window = &window;
+  vtkNew<vtkCallbackCommand> on_current;
+  on_current->SetCallback(keepViewport);
+  parts_->on_current = window.AddObserver(vtkCommand::WindowMakeCurrentEvent, on_current, -1.0F);
   window.SetMultiSamples(0);
   window.SetNumberOfLayers(2);
   window.AddRenderer(parts_->renderer);
@@ -47,6 +65,7 @@ void Scene::detach() {
   if (!parts_->window) return;
   parts_->window->RemoveRenderer(parts_->renderer);
   parts_->window->RemoveRenderer(parts_->front);
+  parts_->window->RemoveObserver(parts_->on_current);
   parts_->window = nullptr;
 }
 

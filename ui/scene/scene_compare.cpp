@@ -11,7 +11,8 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr Rgb kBoxColour{240, 200, 60};
-constexpr Rgb kMeasureColour{120, 220, 255};
+constexpr Rgb kBoxOnLight{150, 95, 0};
+constexpr Rgb kMeasureColour{120, 220, 255}, kMeasureOnLight{0, 80, 150};
 constexpr double kThinnestSlice_m = 0.01;
 
 std::string signedLength(double metres) {
@@ -136,7 +137,8 @@ void Scene::dragSlice(const SliceHandle& handle, const Vector2d& by_px) {
 
 void Scene::Parts::placeBox() {
   box.actor->VisibilityOff();
-  if (slice) box.set(boxShape(slice->low, slice->high), kBoxColour, 1.0 * pixel_ratio);
+  if (slice)
+    box.set(boxShape(slice->low, slice->high), lightGround() ? kBoxOnLight : kBoxColour, 1.0 * pixel_ratio);
 }
 
 void Scene::setMeasured(const std::vector<Vector3d>& places) {
@@ -144,7 +146,7 @@ void Scene::setMeasured(const std::vector<Vector3d>& places) {
   p.measured = places;
   p.measure.actor->VisibilityOff();
   if (places.empty()) return;
-  const Rgb ink = p.lightGround() ? mixed(kMeasureColour, {0, 60, 120}, 0.8) : kMeasureColour;
+  const Rgb ink = p.lightGround() ? kMeasureOnLight : kMeasureColour;
   p.measure.set(measureShape(places), ink, 2.0 * p.pixel_ratio);
   p.measure.actor->GetProperty()->SetPointSize(static_cast<float>(9.0 * p.pixel_ratio));
 }
@@ -175,7 +177,7 @@ void Scene::Parts::writeOver(OverlayContents& contents, const Scene& scene) cons
   const std::vector<Vector3d> places = handles();
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (std::abs(camera.forward()[static_cast<int>(k / 2)]) > 0.97) continue;
-    contents.handles.emplace_back(scene.pixelOf(places[k]), kBoxColour);
+    contents.handles.emplace_back(scene.pixelOf(places[k]), lightGround() ? kBoxOnLight : kBoxColour);
   }
   if (measured.size() == 2) {
     const Vector3d by = measured[1] - measured[0];

@@ -81,6 +81,7 @@ struct Scene::Parts {
   vtkNew<vtkRenderer> front;  // marks, numbers, triad: over everything
   std::unique_ptr<SceneOverlay> overlay;
   vtkRenderWindow* window = nullptr;
+  unsigned long on_current = 0;  // observes the window
 
   SnapshotPtr snapshot;
   Stage stage = Stage::Odometry;

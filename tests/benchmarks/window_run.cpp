@@ -1,0 +1,115 @@
+#include "tests/benchmarks/window_run.h"
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+
+#include <nlohmann/json.hpp>
+
+namespace tiltmap::benchmarks {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+// What the program printed as one JSON object; null where there was none.
+Json told(const std::string& command) {
+  std::FILE* pipe = ::popen(command.c_str(), "r");
+  if (!pipe) return {};
+  std::string output;
+  std::array<char, 4096> buffer{};
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    output.append(buffer.data(), count);
+  if (::pclose(pipe) != 0) return {};
+  const Json json = Json::parse(output, nullptr, false);
+  return json.is_object() ? json : Json();
+}
+
+std::string quoted(const fs::path& path) {
+  return "'" + path.string() + "'";
+}
+
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+  std::array<char, 240> text{};
+  std::snprintf(text.data(), text.size(), format, values...);
+  return text.data();
+}
+
+}  // namespace
+
+bool addWindowRows(Table& table, const fs::path& benchmark, const fs::path& program, const fs::path& scratch,
+                   const std::function<void(const std::string&)>& tell) {
+  fs::remove_all(scratch);
+  fs::create_directories(scratch);
+  const std::string display = "LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -s '-screen 0 1920x1200x24' ";
+  const std::string quiet = " 2>/dev/null";
+  bool kept = true;
+  const std::string frames = "3D view of 1170 x 553, software OpenGL, 10 million points";
+  for (const std::string how : {"scan", "height", "scan shaded"}) {
+    tell("frames of 10 million points " + how);
+    const Json json = told(display + quoted(benchmark) + " frames " + quoted(scratch / "frames") +
+                           " 10000000 " + how + quiet);
+    if (json.is_null()) {
+      table.notes.push_back("Skipped: the window's benchmark did not run; it needs xvfb-run.");
+      return kept;
+    }
+    const double rate = json.at("frames_per_s").get<double>();
+    const long long points = json.at("moving_points").get<long long>();
+    kept = kept && rate >= 20.0 && points >= 50000;
+    Row moving{.subject = frames, .program = "turning, by " + how};
+    moving.wall_ms = 1e3 / rate;
+    moving.remark =
+        formatted("%.1f frames/s, slowest twentieth %.0f ms, %lld points in %d tiles of 24 px", rate,
+                  json.at("slowest_twentieth_ms").get<double>(), points, json.at("moving_tiles").get<int>());
+    table.rows.push_back(moving);
+    Row refined{.subject = frames, .program = "all points after the last move"};
+    refined.wall_ms = json.at("refined_ms").get<double>();
+    refined.remark = formatted(
+        "the 200 ms of rest included; longest piece between two events %.0f ms; %lld "
+        "points of %lld scans; %.0f MB",
+        json.at("longest_piece_ms").get<double>(), json.at("points").get<long long>(),
+        json.at("scans").get<long long>(), json.at("memory_mb").get<double>());
+    table.rows.push_back(refined);
+  }
+
+  tell("start of the window");
+  const fs::path project = scratch / "demo.tiltmap";
+  const std::string made = quoted(program) + " new " + quoted(project) + " && " + quoted(program) +
+                           " simulate " + quoted(project) + " --experiment exp2fixed --quiet && " +
+                           quoted(program) + " register " + quoted(project) + " --quiet && " +
+                           quoted(program) + " relax " + quoted(project) + " --quiet";
+  if (std::system(("(" + made + ") >/dev/null 2>&1").c_str()) != 0) {
+    table.notes.push_back("Skipped: the project for the window's start could not be made.");
+    return kept;
+  }
+  // The first start warms up.
+  Json best;
+  for (int round = 0; round < 3; ++round) {
+    const Json json = told(display + quoted(benchmark) + " start " + quoted(scratch / "start") + " " +
+                           quoted(project) + quiet);
+    if (!json.is_null() && round > 0 &&
+        (best.is_null() || json.at("usable_ms").get<double>() < best.at("usable_ms").get<double>()))
+      best = json;
+  }
+  if (best.is_null()) {
+    table.notes.push_back("Skipped: the window did not start.");
+    return kept;
+  }
+  const std::string begin = "the window, warm, with the demo project of 14 scans";
+  Row usable{.subject = begin, .program = "start to usable window"};
+  usable.wall_ms = best.at("usable_ms").get<double>();
+  table.rows.push_back(usable);
+  Row drawn{.subject = begin, .program = "opening to all points drawn"};
+  drawn.wall_ms = best.at("drawn_ms").get<double>();
+  table.rows.push_back(drawn);
+  Row memory{.subject = begin, .program = "memory then"};
+  memory.remark = formatted("%.0f MB, at most %.0f MB", best.at("memory_mb").get<double>(),
+                            best.at("memory_peak_mb").get<double>());
+  table.rows.push_back(memory);
+  return kept && *usable.wall_ms < 1000.0 && *drawn.wall_ms < 1000.0 &&
+         best.at("memory_peak_mb").get<double>() < 400.0;
+}
+
+}  // namespace tiltmap::benchmarks
