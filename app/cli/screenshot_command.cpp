@@ -20,7 +20,7 @@ struct ScreenshotWords {
   double scale = 1.0;
   long long scan = -1;
   double point_size = 2.0;
-  bool white = false;
+  bool white = false, shaded = false;
 };
 
 struct Size {
@@ -52,6 +52,7 @@ Result<RgbImage> mapPicture(const SnapshotPtr& snapshot, const ScreenshotWords& 
   if (!colouring) return fail(colouring.error());
   settings.scene.colouring = *colouring;
   settings.scene.point_px = words.point_size;
+  settings.scene.shaded = words.shaded;
   settings.scene.reduced = words.points == "reduced";
   if (words.scan >= 0) {
     if (const auto scan = snapshot->scanAt(words.scan); !scan) return fail(scan.error());
@@ -145,8 +146,10 @@ void addScreenshot(CLI::App& app, Chosen& chosen) {
       ->check(CLI::IsMember({"top", "front", "side", "iso"}));
   command->add_option("--scan", words->scan, "Number of a scan, from 0: the map shows it alone")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--colour", words->colour, "Points by scan, height, range, intensity, normal or age")
-      ->check(CLI::IsMember({"scan", "height", "range", "intensity", "normal", "age"}));
+  command
+      ->add_option("--colour", words->colour,
+                   "Points by scan, height, range, intensity, normal, age or residual")
+      ->check(CLI::IsMember({"scan", "height", "range", "intensity", "normal", "age", "residual"}));
   command
       ->add_option("--quantity", words->quantity,
                    "Depth image of range, median, planar-median, changed, normal, incidence, intensity, code "
@@ -163,6 +166,7 @@ void addScreenshot(CLI::App& app, Chosen& chosen) {
       ->check(CLI::Range(1.0, 4.0));
   command->add_option("--points", words->points, "all or reduced")->check(CLI::IsMember({"all", "reduced"}));
   command->add_option("--point-size", words->point_size, "Pixels, 1 to 20")->check(CLI::Range(1.0, 20.0));
+  command->add_flag("--shaded", words->shaded, "Map: points behind their neighbours are darker");
   command->add_flag("--white", words->white, "On white, for print");
   command->callback([words, &chosen] {
     chosen.body = [words](Context& context) -> int { return takeScreenshot(context, *words); };

@@ -1,3 +1,4 @@
+#include "core/products/residuals.h"
 #include "ui/scene/offscreen_window.h"
 #include "ui/scene/screenshots.h"
 
@@ -21,6 +22,17 @@ Result<RgbImage> mapScreenshot(const SnapshotPtr& snapshot, const MapScreenshot&
   if (const auto troubles = scene.show(snapshot, settings.stage); !troubles.empty())
     return fail("a scan cannot be read: " + troubles.front(), snapshot->path().string(),
                 "`tiltmap verify` says what is damaged");
+  if (settings.scene.colouring == SceneColouring::Residual) {
+    ProjectResiduals residuals(snapshot, settings.stage);
+    ScanResiduals values;
+    for (std::size_t i = 0; i < snapshot->scans().size(); ++i) {
+      if (settings.scan && *settings.scan != i) continue;
+      auto computed = residuals.of(i);
+      if (!computed) return fail(computed.error());
+      values[snapshot->scans()[i].id] = std::make_shared<const std::vector<float>>(std::move(*computed));
+    }
+    scene.setResiduals(values);
+  }
   scene.setOrthographic(settings.view != SceneView::Iso && settings.view != SceneView::IsoBack);
   scene.setView(settings.view);
   scene.render();
