@@ -69,8 +69,52 @@ void readAsEverything(const Telegram& telegram) {
   require(parseErrors(telegram).size() <= kLongestPayload);
   const UnitType type = parseType(telegram.data());
   require(type.text.size() <= telegram.payload.size());
+  for (const Byte name : telegram.payload) (void)isMeasurement(name);
   (void)type.sendsReflectivity();
   (void)warningsOf({telegram.status()});
+}
+
+// Every request that the driver may make, with any numbers, is found again at the other end.
+void askEverything(unsigned a, unsigned b) {
+  const int first = static_cast<int>(a & 0xFFFFU), last = static_cast<int>(b & 0xFFFFU);
+  const Variant variant{first, last};
+  (void)variant.legal();
+  for (const Request& request : {request::reset(),
+                                 request::status(),
+                                 request::errors(),
+                                 request::operatingHours(),
+                                 request::type(),
+                                 request::readConfiguration(),
+                                 request::readConfiguration2(),
+                                 request::installationMode(),
+                                 request::testPassword(),
+                                 request::setMode(static_cast<Byte>(a)),
+                                 request::stream(),
+                                 request::onRequest(),
+                                 request::streamPartial(),
+                                 request::streamMean(first),
+                                 request::streamRange(first, last),
+                                 request::streamReflectivity(first, last),
+                                 request::setRate(kRates[a % 4]),
+                                 request::scan(),
+                                 request::partialScan(),
+                                 request::meanScan(first),
+                                 request::range(first, last),
+                                 request::rangeWithFields(first, last),
+                                 request::reflectivity(first, last),
+                                 request::energy(first, last),
+                                 request::cartesian(first, last),
+                                 request::setVariant(variant),
+                                 request::permanentRate(a % 2 == 0),
+                                 request::activeFieldSet(),
+                                 request::writeConfiguration(Configuration::factory().block())}) {
+    const ByteVector bytes = request.encoded(static_cast<Byte>(b & 0x7F));
+    const auto found = tokensOf(bytes, Sender::Host, bytes.size());
+    require(found.size() == 1);
+    const auto& telegram = std::get<Telegram>(found[0]);
+    require(telegram.command() == request.command && std::ranges::equal(telegram.data(), request.data));
+    require(request.answer() >= 0x80);
+  }
 }
 
 }  // namespace
@@ -93,6 +137,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     readAsEverything(inside);
     const Request request{bytes[0], ByteVector(bytes.begin() + 1, bytes.end())};
     require(!request.encoded(static_cast<Byte>(data[0] & 0x7F)).empty() && request.answer() >= 0x80);
+    if (bytes.size() == 4) askEverything(word(bytes, 0), word(bytes, 2));
   }
   return 0;
 }
