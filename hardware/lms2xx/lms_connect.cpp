@@ -96,7 +96,7 @@ Result<LmsReport> LmsScanner::setUp(const std::stop_token& stop) {
   if (!report_.type.model.starts_with("LMS2"))
     report_.warnings.push_back("it calls itself `" + report_.type.text +
                                "`, which is no LMS 2xx we know; going on");
-  if (settings_.baud != report_.baud)
+  if (!settings_.as_found && settings_.baud != report_.baud)
     if (const auto changed = setBaud(settings_.baud, stop); !changed) {
       if (state_ == LmsState::Lost) return fail(changed.error());
       report_.warnings.push_back(changed.error().what + "; staying at " + std::to_string(report_.baud) +
@@ -108,6 +108,7 @@ Result<LmsReport> LmsScanner::setUp(const std::stop_token& stop) {
   auto configuration = readConfiguration(stop);
   if (!configuration) return fail(configuration.error());
   report_.configuration = *configuration;
+  if (settings_.as_found) return report_;
   if (const auto applied = applyConfiguration(stop); !applied) return fail(applied.error());
   const Variant wished = report_.type.sendsReflectivity() ? Variant{90, 50} : settings_.variant;
   if (report_.status.variant != wished)

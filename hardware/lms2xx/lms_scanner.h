@@ -25,6 +25,8 @@ struct LmsSettings {
   // A single request gives the next scan to be complete, which may have begun before it. A unit that is found
   // to answer with an older one needs more here.
   int polled_scans_old = 1;
+  // Look and leave everything as it is: rate, variant and configuration.
+  bool as_found = false;
 };
 
 // What connecting found.
