@@ -1,7 +1,10 @@
-// tiltmap devices
+// tiltmap devices [URL]
 #include <cstdio>
 
 #include "app/cli/command.h"
+#include "core/base/text.h"
+#include "hardware/lms2xx/lms_scanner.h"
+#include "hardware/transport/channel_opener.h"
 #include "hardware/transport/serial_port.h"
 
 namespace tiltmap::cli {
@@ -52,12 +55,90 @@ int listDevices(Context& context) {
   return kDone;
 }
 
+std::string degreesText(const lms2xx::Variant& variant) {
+  return std::to_string(variant.angle_deg) + " degrees by " + fixedReal(variant.resolution_cdeg / 100.0, 2);
+}
+
+std::string dirtText(const lms2xx::UnitStatus& status) {
+  std::string text;
+  for (const int value : status.pollution) text += (text.empty() ? "" : " ") + std::to_string(value);
+  text += ", reference";
+  for (const int value : status.reference_pollution) text += " " + std::to_string(value);
+  return text;
+}
+
+std::string scannerText(const LmsReport& report, const std::vector<lms2xx::StoredError>& errors) {
+  const lms2xx::UnitStatus& status = report.status;
+  std::string text = report.type.text + " at " + report.port + "\n";
+  const auto row = [&text](std::string name, const std::string& value) {
+    name.resize(22, ' ');
+    text += "  " + name + value + "\n";
+  };
+  row("rate", std::to_string(report.baud) + " Bd" +
+                  (status.keeps_rate ? ", kept at power-on" : "; 9600 at power-on"));
+  row("firmware", status.version + ", boot " + status.boot_version);
+  row("field of view", degreesText(status.variant));
+  row("unit", status.unit == lms2xx::Unit::Millimetre ? "mm (to 8 m)" : "cm (to 80 m)");
+  if (report.configuration.plausible())
+    row("real-time indices", report.configuration.sendsIndices() ? "sent" : "not sent");
+  row("dirt on the window", dirtText(status));
+  row("stored errors", errors.empty() ? "none" : std::to_string(errors.size()));
+  for (const lms2xx::StoredError& error : errors)
+    row("", "type " + std::to_string(error.type) + ", number " + std::to_string(error.number));
+  return text;
+}
+
+nlohmann::json scannerJson(const LmsReport& report, const std::vector<lms2xx::StoredError>& errors) {
+  nlohmann::json stored = nlohmann::json::array();
+  for (const lms2xx::StoredError& error : errors)
+    stored.push_back({{"type", error.type}, {"number", error.number}});
+  return {{"port", report.port},
+          {"type", report.type.text},
+          {"baud", report.baud},
+          {"keeps_rate", report.status.keeps_rate},
+          {"firmware", report.status.version},
+          {"angle_deg", report.status.variant.angle_deg},
+          {"resolution_deg", report.status.variant.resolution_cdeg / 100.0},
+          {"unit", report.status.unit == lms2xx::Unit::Millimetre ? "mm" : "cm"},
+          {"configuration", hexText(report.configuration.block())},
+          {"pollution", report.status.pollution},
+          {"reference_pollution", report.status.reference_pollution},
+          {"errors", stored},
+          {"warnings", warningsJson(report.warnings)}};
+}
+
+// Finds the scanner at whatever rate it is, and leaves it as it is.
+int askScanner(Context& context, const std::string& text) {
+  const auto url = parseDeviceUrl(text, scannerSchemes());
+  if (!url) return context.console.wrongUsage(url.error());
+  RealClock clock;
+  ChannelOpener opener(*url, 9600, clock);
+  LmsSettings settings;
+  settings.as_found = true;
+  LmsScanner scanner([&opener] { return opener.open(); }, clock, settings);
+  context.console.note("Looking for the scanner at every rate.");
+  const auto report = scanner.connect(context.stop);
+  if (!report) return context.console.failed(report.error());
+  const auto errors = scanner.storedErrors(context.stop);
+  if (!errors) return context.console.failed(errors.error());
+  for (const std::string& warning : report->warnings) context.console.warn(warning);
+  context.console.print(scannerText(*report, *errors));
+  context.console.printJson(scannerJson(*report, *errors));
+  return kDone;
+}
+
 }  // namespace
 
 void addDevices(CLI::App& app, Chosen& chosen) {
-  CLI::App* command =
-      app.add_subcommand("devices", "List the serial ports that instruments may be plugged into");
-  command->callback([&chosen] { chosen.body = listDevices; });
+  CLI::App* command = app.add_subcommand(
+      "devices", "List the serial ports that instruments may be plugged into, or ask a scanner how it is");
+  auto url = std::make_shared<std::string>();
+  command->add_option("url", *url, "A scanner to ask, as lms2xx:PORT; nothing in it is changed");
+  command->callback([&chosen, url] {
+    chosen.body = [url](Context& context) {
+      return url->empty() ? listDevices(context) : askScanner(context, *url);
+    };
+  });
 }
 
 }  // namespace tiltmap::cli
