@@ -62,8 +62,8 @@ class RequestEngine {
     Instant first{}, last{};
     bool broken = false;  // what begun_ was told of will not be whole
   };
-  // The next token; none at the deadline.
-  Result<Heard> hear(Instant deadline, const std::stop_token& stop);
+  // The next token; none at the deadline. A telegram that does not go on for `gap` was none.
+  Result<Heard> hear(Instant deadline, Duration gap, const std::stop_token& stop);
   bool looksBegun(Byte command, std::size_t size) const;
 
   ByteChannel& channel_;

@@ -17,6 +17,9 @@ namespace tiltmap {
 
 namespace {
 
+constexpr std::size_t kMostPending = 65536;
+constexpr auto kLongestPending = std::chrono::milliseconds(500);
+
 Error systemError(const std::string& what, const std::string& where) {
   return {what + ": " + std::strerror(errno), where,
           "look at /dev/pts; without pseudo terminals run emulator and driver in memory"};
@@ -84,6 +87,8 @@ void PseudoTerminal::close() {
 Result<std::size_t> PseudoTerminal::read(std::span<Byte> buffer, Instant deadline) {
   for (;;) {
     if (master_ < 0) return fail("the pseudo terminal is closed", name_, "open another one");
+    if (!pending_.empty())
+      if (const auto flushed = flush(); !flushed) return fail(flushed.error());
     const ssize_t count = ::read(master_, buffer.data(), buffer.size());
     if (count > 0) return static_cast<std::size_t>(count);
     if (count < 0 && errno != EAGAIN && errno != EINTR && errno != EIO)
@@ -102,14 +107,25 @@ Result<std::size_t> PseudoTerminal::read(std::span<Byte> buffer, Instant deadlin
 }
 
 Status PseudoTerminal::write(std::span<const Byte> bytes) {
+  if (pending_.empty()) moved_ = std::chrono::steady_clock::now();
+  pending_.insert(pending_.end(), bytes.begin(), bytes.end());
+  return flush();
+}
+
+Status PseudoTerminal::flush() {
   if (master_ < 0) return fail("the pseudo terminal is closed", name_, "open another one");
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(master_, bytes.data(), bytes.size());
+  const auto now = std::chrono::steady_clock::now();
+  std::size_t written = 0;
+  while (written < pending_.size()) {
+    const ssize_t count = ::write(master_, pending_.data() + written, pending_.size() - written);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0 && (errno == EAGAIN || errno == EIO)) return {};  // nobody listens
+    if (count < 0 && (errno == EAGAIN || errno == EIO)) break;
     if (count < 0) return fail(systemError("cannot write", name_));
-    bytes = bytes.subspan(static_cast<std::size_t>(count));
+    written += static_cast<std::size_t>(count);
+    moved_ = now;
   }
+  pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(written));
+  if (pending_.size() > kMostPending || now - moved_ > kLongestPending) pending_.clear();
   return {};
 }
 

@@ -21,7 +21,8 @@ class PseudoTerminal : public DeviceWire {
   // "/dev/pts/5": what a client opens.
   const std::string& name() const override { return name_; }
   Result<std::size_t> read(std::span<Byte> buffer, Instant deadline) override;
-  // What a client leaves unread beyond the terminal's buffer is lost, as on a wire.
+  // What a client leaves unread waits, as in the buffers of a port; it is lost where it becomes more than 64
+  // KiB or nothing is taken for half a second.
   Status write(std::span<const Byte> bytes) override;
   Status setLine(const LineSettings& line) override;
   LineSettings line() const override { return line_; }
@@ -33,12 +34,15 @@ class PseudoTerminal : public DeviceWire {
   int descriptor() const override { return master_; }
 
  private:
-  PseudoTerminal(RealClock& clock) : clock_(clock) {}
+  explicit PseudoTerminal(RealClock& clock) : clock_(clock) {}
+  Status flush();
   RealClock& clock_;
   int master_ = -1;
   int slave_ = -1;  // kept open, so that the terminal outlives a client that leaves
   std::string name_, link_;
   LineSettings line_;
+  ByteVector pending_;
+  std::chrono::steady_clock::time_point moved_{};  // when the client last took some of it
 };
 
 }  // namespace tiltmap
