@@ -88,6 +88,9 @@ class LmsEmulator : public Actor {
   // Off now; on again after `off`, then booting, at 9600 or the permanent rate.
   void cutPower(Duration off);
 
+  // As if another program had changed it; nobody is told.
+  void setBaud(int baud) { baud_ = baud; }
+
   int baud() const { return baud_; }
   Byte mode() const { return mode_; }
   const lms2xx::Variant& variant() const { return variant_; }

@@ -46,6 +46,7 @@ const std::map<std::string, NamedFault>& named() {
       {"dirty-window", {1, 1, [](LmsEmulator& e, double v) { e.faults().dirty_window = v > 0.0; }}},
       {"dazzled", {1, 1, [](LmsEmulator& e, double v) { e.faults().dazzled = v > 0.0; }}},
       {"power-cut", {1.0, 3600.0, [](LmsEmulator& e, double v) { e.cutPower(durationOf(v)); }}},
+      {"wrong-rate", {19200, 500000, [](LmsEmulator& e, double v) { e.setBaud(countOf(v)); }}},
       {"silent", {1, 1, [](LmsEmulator& e, double v) { e.faults().silent = v > 0.0; }}},
   };
   return all;

@@ -118,9 +118,11 @@ RequestEngine::Reply RequestEngine::ask(const Request& request, const Limits& li
     const Instant written = clock_.now();
     if (const auto sent = channel_.write(bytes); !sent) return end(Outcome::ChannelFailed, sent.error());
     // A port that waits until the bytes have left returns later than one that does not.
-    reply.asked = written + channel_.line().wireTime(bytes.size());
+    // Of several askings the first counts, in case a late answer to it is heard.
+    const Instant heard_there = written + channel_.line().wireTime(bytes.size());
+    if (attempt == 0) reply.asked = heard_there;
     bool acknowledged = false, refused = false;
-    Instant deadline = std::max(clock_.now(), reply.asked) + kAcknowledgeLimit;
+    Instant deadline = std::max(clock_.now(), heard_there) + kAcknowledgeLimit;
     // What must not be asked twice gets all the time there is, in case only the acknowledge was lost.
     if (limits.attempts == 1) deadline += limits.answer;
     while (!refused) {

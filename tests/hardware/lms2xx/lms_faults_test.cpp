@@ -255,16 +255,18 @@ TEST(LmsFaults, SilentDeathIsNoticed) {
 }
 
 TEST(LmsFaults, WrongRateInTheMiddleOfASession) {
-  LmsRig rig;
-  ASSERT_TRUE(rig.scanner.connect());
-  // Another program has changed it.
-  ASSERT_TRUE(rig.device);
-  rig.emulator.cutPower(Duration(1));
-  rig.clock.sleepFor(10s);
-  EXPECT_EQ(rig.emulator.baud(), 9600);
-  EXPECT_FALSE(rig.scanner.scan());
-  ASSERT_TRUE(rig.scanner.recover(60.0));
-  EXPECT_TRUE(rig.scanner.scan());
+  for (const char* fault : {"wrong-rate=9600", "wrong-rate=19200", "wrong-rate=500000"}) {
+    SCOPED_TRACE(fault);
+    LmsRig rig;
+    ASSERT_TRUE(rig.scanner.connect());
+    ASSERT_TRUE(rig.emulator.applyFault(fault));
+    const auto line = rig.scanner.scan();
+    ASSERT_FALSE(line);
+    expectUseful(line.error(), "does not answer");
+    ASSERT_TRUE(rig.scanner.recover(60.0));
+    EXPECT_EQ(rig.emulator.baud(), 38400);
+    EXPECT_TRUE(rig.scanner.scan());
+  }
 }
 
 TEST(LmsFaults, AnAdapterThatCannotDoTheRateLeavesTheScannerWhereItIs) {
