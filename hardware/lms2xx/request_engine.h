@@ -28,7 +28,7 @@ class RequestEngine {
   struct Reply {
     Outcome outcome = Outcome::Silent;
     Arrival arrival;   // of Answered
-    Instant asked{};   // when the request that was answered had left
+    Instant asked{};   // when the request had left, the first time
     int repeated = 0;  // how often it had to be asked again
     Error error;       // else, in words
     bool answered() const { return outcome == Outcome::Answered; }
