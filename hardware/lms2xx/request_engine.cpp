@@ -14,7 +14,7 @@ constexpr Duration kAfterRefusal = 30ms;
 // The listing allows 14 ms between bytes; behind USB bytes come in heaps.
 constexpr Duration kByteGap = 60ms;
 // In a stream nobody waits for one telegram, and what follows tells soon enough that one was cut.
-constexpr Duration kStreamGap = 300ms;
+constexpr Duration kStreamGap = 900ms;
 // So that a stop takes effect.
 constexpr Duration kSlice = 50ms;
 
