@@ -65,7 +65,12 @@ void addPhoto(CLI::App& app, Chosen& chosen);
 void addLink(CLI::App& app, Chosen& chosen);
 void addFiles(CLI::App& app, Chosen& chosen);  // copy, merge, compact, verify
 void addScreenshot(CLI::App& app, Chosen& chosen);
+void addCapture(CLI::App& app, Chosen& chosen);
+void addEmulate(CLI::App& app, Chosen& chosen);
 void addGui(CLI::App& app, Chosen& chosen);
+
+// What the rooms beside core can do joins operations(); once, before anything else.
+void registerOperations();
 
 // The window, on a project where one is named; fails where there is no display.
 int openWindow(Context& context, const std::string& project);

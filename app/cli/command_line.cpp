@@ -77,6 +77,7 @@ int parseError(const CLI::App& app, const CLI::ParseError& error, Console& conso
 }  // namespace
 
 int run(int argc, char** argv) {
+  registerOperations();
   CLI::App app("Tiltmap: from the range matrices of a tilted laser scanner to one consistent 3D map",
                "tiltmap");
   app.set_version_flag("--version", "tiltmap " TILTMAP_VERSION);
@@ -87,7 +88,7 @@ int run(int argc, char** argv) {
   app.footer("`tiltmap COMMAND --help` tells the rest.");
 
   Chosen chosen;
-  for (const auto add : {addNew, addSimulate, addImport, addInfo, addRegister, addRelax, addPoses,
+  for (const auto add : {addNew, addSimulate, addCapture, addEmulate, addImport, addInfo, addRegister, addRelax, addPoses,
                          addEvaluate, addExport, addParameters, addHistory, addEdits, addPhoto, addLink,
                          addFiles, addDemo, addDevices, addScreenshot, addGui})
     add(app, chosen);

@@ -10,17 +10,22 @@ Result<OperationResult> runOperation(Context& context, Project& project, const s
                                      const std::string& preset, const ParameterValues& values) {
   auto found = operations().get(operation);
   if (!found) return fail(found.error());
+  const std::int64_t before = project.snapshot()->revision();
   auto job = Job::start(**found, project.snapshot(), preset, values);
   if (!job) return fail(job.error());
   const JobControl control = context.job();
   while (!(*job)->waitFor(std::chrono::milliseconds(40))) {
     if (context.stop.stop_requested()) (*job)->cancel();
+    (*job)->serve(project);
     const Progress progress = (*job)->progress();
     control.tell(progress.fraction, progress.message);
   }
+  (*job)->serve(project);
   context.console.endProgress();
   const auto& result = (*job)->result();
   if (!result) {
+    if (result.error().what == kCancelled && project.snapshot()->revision() != before)
+      return fail("cancelled; what was stored until then is kept", project.path().string(), result.error().remedy);
     if (result.error().what == kCancelled)
       return fail("cancelled; the project is as it was", project.path().string(),
                   "run the command again when you like");

@@ -1,6 +1,8 @@
 #include "core/project/job.h"
 
 #include <condition_variable>
+#include <deque>
+#include <functional>
 #include <mutex>
 #include <new>
 #include <optional>
@@ -8,6 +10,7 @@
 #include <thread>
 
 #include "core/base/version.h"
+#include "core/project/live_project.h"
 
 namespace tiltmap {
 
@@ -21,20 +24,55 @@ struct Job::State {
   JobRecord record;  // its state is the job's
   Progress progress;
   std::optional<Result<OperationResult>> result;  // set once by the worker; read by others only when finished
+  // What the worker wants stored; called with null when nobody is going to store it any more.
+  std::deque<std::function<void(Project*)>> wishes;
+  bool abandoned = false;
 
   std::jthread worker;  // last: joined before what it uses goes
 
   void run(const std::stop_token& stop);
   void finish(Result<OperationResult> outcome);
+  void wish(std::function<void(Project*)> what);
+  void abandon();
 };
 
 namespace {
 
+// The worker's side of Job::serve.
+class ServedProject : public LiveProject {
+ public:
+  using Wish = std::function<void(std::function<void(Project*)>)>;
+  explicit ServedProject(Wish wish) : wish_(std::move(wish)) {}
+  Result<Change> apply(ProjectEdit edit) override {
+    auto promise = std::make_shared<std::promise<Result<Change>>>();
+    auto future = promise->get_future();
+    wish_([promise, edit = std::move(edit)](Project* project) {
+      promise->set_value(project ? project->apply(edit) : Result<Change>(fail(closed())));
+    });
+    return future.get();
+  }
+  std::future<Status> appendLine(ScanId scan, int row, ScanLine line) override {
+    auto promise = std::make_shared<std::promise<Status>>();
+    auto future = promise->get_future();
+    wish_([promise, scan, row, line = std::move(line)](Project* project) {
+      promise->set_value(project ? project->appendLine(scan, row, line) : Status(fail(closed())));
+    });
+    return future;
+  }
+
+ private:
+  static Error closed() {
+    return {"the project is being closed", "", "open it again and go on; everything stored so far is there"};
+  }
+  Wish wish_;
+};
+
 // An operation's defect must not end the program and lose the other jobs' results.
 Result<OperationResult> runGuarded(const Operation& operation, const SnapshotPtr& snapshot,
-                                   const ParameterValues& values, const JobControl& control) {
+                                   const ParameterValues& values, const JobControl& control,
+                                   LiveProject& live) {
   try {
-    return operation.run(snapshot, values, control);
+    return operation.runLive(snapshot, values, control, live);
   } catch (const std::bad_alloc&) {
     return fail("there is not enough memory", operation.title(),
                 "close other programs or work on fewer scans");
@@ -56,8 +94,32 @@ void Job::State::run(const std::stop_token& stop) {
     }
     if (notify) notify();
   };
+  ServedProject live([this](std::function<void(Project*)> what) { wish(std::move(what)); });
   // Written before the worker starts and only read while it runs.
-  finish(runGuarded(*operation, snapshot, record.values, control));
+  finish(runGuarded(*operation, snapshot, record.values, control, live));
+}
+
+void Job::State::wish(std::function<void(Project*)> what) {
+  {
+    const std::lock_guard lock(mutex);
+    if (!abandoned) {
+      wishes.push_back(std::move(what));
+      what = nullptr;
+    }
+  }
+  if (what) return what(nullptr);
+  ended.notify_all();
+  if (notify) notify();
+}
+
+void Job::State::abandon() {
+  std::deque<std::function<void(Project*)>> left;
+  {
+    const std::lock_guard lock(mutex);
+    abandoned = true;
+    left.swap(wishes);
+  }
+  for (const auto& what : left) what(nullptr);
 }
 
 void Job::State::finish(Result<OperationResult> outcome) {
@@ -80,6 +142,8 @@ void Job::State::finish(Result<OperationResult> outcome) {
 Job::Job(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Job::~Job() {
   state_->worker.request_stop();
+  // A worker that waits for something to be stored would never end.
+  state_->abandon();
 }
 
 Result<std::unique_ptr<Job>> Job::start(const Operation& operation, SnapshotPtr snapshot,
@@ -127,7 +191,24 @@ void Job::wait() const {
 }
 bool Job::waitFor(std::chrono::milliseconds time) const {
   std::unique_lock lock(state_->mutex);
-  return state_->ended.wait_for(lock, time, [this] { return state_->record.state != JobState::Running; });
+  state_->ended.wait_for(
+      lock, time, [this] { return state_->record.state != JobState::Running || !state_->wishes.empty(); });
+  return state_->record.state != JobState::Running;
+}
+
+bool Job::serve(Project& project) {
+  bool any = false;
+  while (true) {
+    std::function<void(Project*)> what;
+    {
+      const std::lock_guard lock(state_->mutex);
+      if (state_->wishes.empty()) return any;
+      what = std::move(state_->wishes.front());
+      state_->wishes.pop_front();
+    }
+    what(&project);
+    any = true;
+  }
 }
 
 const Result<OperationResult>& Job::result() const {

@@ -16,8 +16,8 @@ namespace tiltmap {
 // waits.
 class Job {
  public:
-  // Called on the worker thread after progress and once at the end; must return quickly (post to an event
-  // loop).
+  // Called on the worker thread after progress, when something is to be stored and once at the end; must return
+  // quickly (post to an event loop).
   using Notify = std::function<void()>;
 
   // Checks names, values and the project first and starts nothing when they are refused.
@@ -34,7 +34,12 @@ class Job {
   Progress progress() const;  // the latest
   void cancel();
   void wait() const;
-  bool waitFor(std::chrono::milliseconds time) const;  // true when finished
+  // True when finished. Ends early when the operation wants something stored: serve() does it.
+  bool waitFor(std::chrono::milliseconds time) const;
+
+  // Stores what the operation has asked for meanwhile (LiveProject), on the thread that owns the project. To
+  // be called when Notify tells of something; a capture waits for it. True when there was anything.
+  bool serve(Project& project);
 
   // After finished(): what came of it. Before: throws std::logic_error.
   const Result<OperationResult>& result() const;

@@ -17,6 +17,8 @@ struct OperationResult {
   std::string report_json;  // one JSON object for scripts and the report; may be empty
 };
 
+class LiveProject;
+
 // Stateless: any thread, several jobs at once. Values are in the units of the edge (see ParameterInfo) and
 // need not be complete: a parameter that is not named has its default.
 class Operation {
@@ -37,6 +39,11 @@ class Operation {
   // kCancelled.
   virtual Result<OperationResult> run(const SnapshotPtr& snapshot, const ParameterValues& values,
                                       const JobControl& control) const = 0;
+  // The same for an operation that stores while it runs (a capture); others leave it as it is.
+  virtual Result<OperationResult> runLive(const SnapshotPtr& snapshot, const ParameterValues& values,
+                                          const JobControl& control, LiveProject&) const {
+    return run(snapshot, values, control);
+  }
 
   // The preset's values with `values` set on top: all parameters. Refuses unknown names (naming the nearest)
   // and values out of range.
@@ -94,7 +101,9 @@ class OperationRegistry {
   std::vector<std::unique_ptr<Operation>> operations_;
 };
 
-// The program's operations (core/project/operations.cpp lists them).
+// The program's operations (core/project/operations.cpp lists core's own).
 const OperationRegistry& operations();
+// For rooms that core does not know: adds one to operations(), before anybody looks at them on another thread.
+void addOperation(std::unique_ptr<Operation> operation);
 
 }  // namespace tiltmap

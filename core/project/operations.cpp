@@ -9,8 +9,10 @@
 
 namespace tiltmap {
 
-const OperationRegistry& operations() {
-  static const OperationRegistry registry = [] {
+namespace {
+
+OperationRegistry& registered() {
+  static OperationRegistry registry = [] {
     OperationRegistry all;
     all.add(makeSimulateOperation());
     all.add(makeImportOperation());
@@ -22,6 +24,16 @@ const OperationRegistry& operations() {
     return all;
   }();
   return registry;
+}
+
+}  // namespace
+
+const OperationRegistry& operations() {
+  return registered();
+}
+
+void addOperation(std::unique_ptr<Operation> operation) {
+  registered().add(std::move(operation));
 }
 
 }  // namespace tiltmap

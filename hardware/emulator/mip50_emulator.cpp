@@ -88,8 +88,10 @@ void Mip50Emulator::rewire(DeviceWire& wire) {
 }
 
 double Mip50Emulator::angle(Instant at) const {
-  return settings_.home_rad +
-         (motor_.position(at, settings_.settle_s) - home_offset_) / countsPerRadian(settings_);
+  // In whole counts from level, so that who counts sees the very same angle.
+  return (motor_.position(at, settings_.settle_s) - home_offset_ -
+          static_cast<double>(settings_.levelCount())) /
+         countsPerRadian(settings_);
 }
 
 bool Mip50Emulator::still(Instant at) const {
@@ -115,7 +117,8 @@ void Mip50Emulator::inject(Mip50Fault fault) {
     const double here = motor_.rawPosition(now);
     motor_.shift(-here);
     home_offset_ -= here;
-    on_ = false;
+    on_ = busy_ = homing_ = stuck_ = false;
+    trip_ = kNever;
     back_on_ = now + durationOf(kOffS);
     outgoing_.clear();
     return;

@@ -45,13 +45,14 @@ Status addOption(DeviceUrl& url, std::string_view part, const DeviceScheme& sche
 
 const std::vector<DeviceScheme>& scannerSchemes() {
   static const std::vector<DeviceScheme> known{
-      {"lms2xx", true, {"angle", "resolution", "unit"}, "lms2xx:/dev/ttyUSB0?baud=38400"}};
+      {"lms2xx", true, {"angle", "resolution", "unit", "latency"}, "lms2xx:/dev/ttyUSB0?baud=38400"}};
   return known;
 }
 
 const std::vector<DeviceScheme>& tiltSchemes() {
-  static const std::vector<DeviceScheme> known{{"mip50", true, {"profile"}, "mip50:/dev/ttyUSB1?baud=19200"},
-                                               {"manual", false, {}, "manual:"}};
+  static const std::vector<DeviceScheme> known{
+      {"mip50", true, {"profile", "axis", "level", "counts", "min", "max"}, "mip50:/dev/ttyUSB1?baud=19200"},
+      {"manual", false, {"min", "max"}, "manual:"}};
   return known;
 }
 

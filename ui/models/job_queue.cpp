@@ -144,6 +144,7 @@ void JobQueue::poll() {
   poll_posted_->store(false);
   Entry* e = active();
   if (!e || e->status.phase != JobPhase::Running || !e->job) return;
+  session_.serve(*e->job);
   readProgress(*e);
   if (e->job->finished())
     conclude(*e);
@@ -221,7 +222,8 @@ void JobQueue::cancelAll() {
   if (Entry* e = active()) {
     if (e->status.phase == JobPhase::Running) {
       e->job->cancel();
-      e->job->wait();
+      while (!e->job->waitFor(std::chrono::milliseconds(50))) session_.serve(*e->job);
+      session_.serve(*e->job);
       // What was finished in the last moment is not wanted any more either.
       e->job->discard();
       end(*e, JobPhase::Cancelled);
@@ -282,7 +284,7 @@ const OperationResult* JobQueue::waitingResult(int id) const {
 void JobQueue::waitForAll() {
   while (Entry* e = active()) {
     if (e->status.phase == JobPhase::Waiting) return;
-    e->job->wait();
+    (void)e->job->waitFor(std::chrono::milliseconds(50));
     poll();
   }
 }

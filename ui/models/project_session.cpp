@@ -119,6 +119,15 @@ Status ProjectSession::apply(const ProjectEdit& edit) {
   return project_ ? settle(project_->apply(edit)) : refused(nothingOpen());
 }
 
+void ProjectSession::serve(Job& job) {
+  if (!project_ || !job.serve(*project_)) return;
+  const SnapshotPtr before = snapshot_;
+  snapshot_ = project_->snapshot();
+  if (snapshot_ == before) return;
+  Q_EMIT changed(changeBetween(*before, *snapshot_));
+  Q_EMIT snapshotReplaced();
+}
+
 Status ProjectSession::accept(Job& job) {
   return project_ ? settle(job.accept(*project_)) : refused(nothingOpen());
 }

@@ -38,6 +38,8 @@ class ProjectSession : public QObject {
   Status refresh();
 
   Status apply(const ProjectEdit& edit);
+  // Stores what a running job has asked for (Job::serve).
+  void serve(Job& job);
   // Stores what a finished job found.
   Status accept(Job& job);
   Status undo();

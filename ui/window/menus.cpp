@@ -25,7 +25,7 @@ void fill(QMenu* menu, const ActionRegistry& actions, const QStringList& ids) {
 
 // Operations that no menu names (new ones) come where they are seen: under Register.
 QStringList otherOperations() {
-  static const QStringList kPlaced = {"simulate", "import", "register", "relax",  "export",
+  static const QStringList kPlaced = {"simulate", "capture", "import", "register", "relax",  "export",
                                       "rebase",   "rename", "report",   "picture"};
   QStringList ids;
   for (const Operation* operation : operations().all())
@@ -57,7 +57,7 @@ void MainWindow::makeMenus() {
   fill(stage, actions_,
        {"stage.latest", "", "stage.truth", "stage.odometry", "stage.pairwise", "stage.relaxed"});
   fill(view, actions_, {"", "view.show-all", "view.show-only", "view.show", "view.hide", "", "view.palette"});
-  fill(menuBar()->addMenu("&Capture"), actions_, {"file.capture", "", "op.import", "op.simulate"});
+  fill(menuBar()->addMenu("&Capture"), actions_, {"file.capture", "op.capture", "", "op.import", "op.simulate"});
   QMenu* registering = menuBar()->addMenu("&Register");
   fill(registering, actions_, {"op.register", "op.rebase"});
   fill(registering, actions_, otherOperations());

@@ -1,0 +1,142 @@
+#include "hardware/capture/instruments.h"
+#include "hardware/capture/lms_scanner_unit.h"
+#include "hardware/emulator/terminal_rig.h"
+#include "hardware/tilt/mip50_unit.h"
+#include "hardware/transport/memory_channel.h"
+#include "hardware/transport/serial_port.h"
+
+namespace tiltmap {
+
+namespace {
+
+LmsSettings scannerSettings(int baud) {
+  LmsSettings settings;
+  settings.baud = baud;
+  settings.latency_s = 0.002;
+  return settings;
+}
+
+TiltDrive driveOf(const RigSettings& settings) {
+  TiltDrive drive;
+  drive.counts_per_turn = settings.tilt.counts_per_turn;
+  drive.level_count = settings.tilt.levelCount();
+  return drive;
+}
+
+class MemoryBench : public EmulatedBench {
+ public:
+  MemoryBench(Experiment experiment, const RigSettings& settings, int baud)
+      : baud_(baud),
+        drive_(driveOf(settings)),
+        scanner_wire_(MemoryPair::make(clock_, "emulated scanner")),
+        tilt_wire_(MemoryPair::make(clock_, "emulated tilt")),
+        rig_(clock_, std::move(experiment), settings, *scanner_wire_.device, *tilt_wire_.device) {
+    clock_.attach(rig_.scanner());
+    clock_.attach(rig_.tilt());
+  }
+  ~MemoryBench() override {
+    clock_.detach(rig_.scanner());
+    clock_.detach(rig_.tilt());
+  }
+
+  Clock& clock() override { return clock_; }
+  Instruments instruments() override {
+    Instruments instruments;
+    instruments.clock = &clock_;
+    instruments.open_scanner = [this]() -> Result<std::unique_ptr<ScannerUnit>> {
+      return std::make_unique<LmsScannerUnit>(
+          [this]() -> Result<std::unique_ptr<ByteChannel>> {
+            MemoryPair pair = MemoryPair::make(clock_, "emulated scanner");
+            rig_.scanner().plug(pair.device.get());
+            scanner_wire_ = std::move(pair);
+            return std::move(scanner_wire_.host);
+          },
+          clock_, scannerSettings(baud_));
+    };
+    instruments.open_tilt = [this]() -> Result<std::unique_ptr<TiltUnit>> {
+      MemoryPair pair = MemoryPair::make(clock_, "emulated tilt");
+      if (Status status = pair.host->setLine({rigBaud(), Parity::None}); !status) return fail(status.error());
+      rig_.tilt().rewire(*pair.device);
+      tilt_wire_ = std::move(pair);
+      return std::make_unique<Mip50Unit>(std::move(tilt_wire_.host), clock_, drive_);
+    };
+    return instruments;
+  }
+  Status moveTo(int stop) override { return rig_.moveTo(stop); }
+  Status fault(const std::string& text) override { return rig_.fault(text); }
+  void unplug() override {
+    scanner_wire_.unplug();
+    tilt_wire_.unplug();
+  }
+  EmulatedRig& rig() override { return rig_; }
+
+ private:
+  static int rigBaud() { return Mip50EmulatorSettings{}.baud; }
+  VirtualClock clock_;
+  int baud_;
+  TiltDrive drive_;
+  MemoryPair scanner_wire_, tilt_wire_;
+  EmulatedRig rig_;
+};
+
+class TerminalBench : public EmulatedBench {
+ public:
+  static Result<std::unique_ptr<EmulatedBench>> make(Experiment experiment, const RigSettings& settings,
+                                                     double speed, int baud) {
+    auto clock = std::make_unique<RealClock>(speed);
+    auto rig = TerminalRig::open(*clock, std::move(experiment), settings);
+    if (!rig) return fail(rig.error());
+    auto bench = std::make_unique<TerminalBench>();
+    bench->clock_ = std::move(clock);
+    bench->rig_ = std::move(*rig);
+    bench->drive_ = driveOf(settings);
+    bench->baud_ = baud;
+    return bench;
+  }
+
+  Clock& clock() override { return *clock_; }
+  Instruments instruments() override {
+    Instruments instruments;
+    instruments.clock = clock_.get();
+    instruments.open_scanner = [this]() -> Result<std::unique_ptr<ScannerUnit>> {
+      return std::make_unique<LmsScannerUnit>([this] { return open(rig_->scannerPort(), 9600); }, *clock_,
+                                              scannerSettings(baud_));
+    };
+    instruments.open_tilt = [this]() -> Result<std::unique_ptr<TiltUnit>> {
+      auto channel = open(rig_->tiltPort(), Mip50EmulatorSettings{}.baud);
+      if (!channel) return fail(channel.error());
+      return std::make_unique<Mip50Unit>(std::move(*channel), *clock_, drive_);
+    };
+    return instruments;
+  }
+  Status moveTo(int stop) override { return rig_->moveTo(stop); }
+  Status fault(const std::string& text) override { return rig_->fault(text); }
+  void unplug() override {
+    (void)rig_->fault("unplug-scanner");
+    (void)rig_->fault("unplug-tilt");
+  }
+  EmulatedRig& rig() override { return rig_->rig(); }
+
+ private:
+  Result<std::unique_ptr<ByteChannel>> open(const std::string& port, int baud) {
+    auto channel = SerialPort::open(port, {baud, Parity::None}, *clock_);
+    if (!channel) return fail(channel.error());
+    return std::move(*channel);
+  }
+
+  std::unique_ptr<RealClock> clock_;
+  std::unique_ptr<TerminalRig> rig_;
+  TiltDrive drive_;
+  int baud_ = 38400;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<EmulatedBench>> EmulatedBench::make(Experiment experiment, const RigSettings& settings,
+                                                           double speed, int scanner_baud) {
+  if (speed > 0.0)
+    if (auto bench = TerminalBench::make(experiment, settings, speed, scanner_baud)) return bench;
+  return std::make_unique<MemoryBench>(std::move(experiment), settings, scanner_baud);
+}
+
+}  // namespace tiltmap

@@ -1,0 +1,41 @@
+// From what a command line names to instruments that can be opened, real or emulated.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "hardware/capture/sweep.h"
+#include "hardware/emulator/rig.h"
+#include "hardware/tilt/manual_unit.h"
+
+namespace tiltmap {
+
+// "lms2xx:PORT?baud=38400" and "mip50:PORT?level=312525" or "manual:". Checks the words, the table file of a
+// MIP 50 and its drive, and opens nothing yet; each opening looks for the port anew. `ask` may be empty where
+// no tilt is set by hand. The clock must outlive what is opened.
+Result<Instruments> namedInstruments(const std::string& scanner_url, const std::string& tilt_url,
+                                     RealClock& clock, AskOperator ask);
+
+// An emulated rig and the clock it lives on.
+class EmulatedBench {
+ public:
+  // speed above 0: over pseudo terminals, so many times as fast as the instruments are. 0: in memory, on a
+  // virtual clock, as fast as the machine can; the same bytes and times every run. Where there are no
+  // pseudo terminals it is in memory as well.
+  // The drivers work at scanner_baud.
+  static Result<std::unique_ptr<EmulatedBench>> make(Experiment experiment, const RigSettings& settings,
+                                                     double speed, int scanner_baud = 38400);
+  virtual ~EmulatedBench() = default;
+
+  virtual Clock& clock() = 0;
+  // Its drive knows where level is.
+  virtual Instruments instruments() = 0;
+  virtual Status moveTo(int stop) = 0;
+  virtual Status fault(const std::string& text) = 0;
+  // Pulls both plugs; opening an instrument finds it again.
+  virtual void unplug() = 0;
+  // Not while real time runs: for tests in memory.
+  virtual EmulatedRig& rig() = 0;
+};
+
+}  // namespace tiltmap

@@ -1,0 +1,190 @@
+#include "hardware/capture/lms_scanner_unit.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace tiltmap {
+
+using namespace lms2xx;
+
+namespace {
+
+constexpr double kTurnS = 0.01332;
+// The listing allows 14 ms between bytes; behind USB they come in heaps.
+constexpr double kByteGapS = 0.06;
+// Telegrams whose beginnings are remembered: long enough ago, and the mirror may have drifted.
+constexpr std::size_t kRecent = 4;
+constexpr Byte kScanAnswer = 0xB0;
+
+// One channel for two owners.
+class SharedChannel : public ByteChannel {
+ public:
+  explicit SharedChannel(std::shared_ptr<ByteChannel> channel) : channel_(std::move(channel)) {}
+  Result<std::size_t> read(std::span<Byte> buffer, Instant deadline) override {
+    return channel_->read(buffer, deadline);
+  }
+  Status write(std::span<const Byte> bytes) override { return channel_->write(bytes); }
+  Status setLine(const LineSettings& line) override { return channel_->setLine(line); }
+  LineSettings line() const override { return channel_->line(); }
+  Status discardInput() override { return channel_->discardInput(); }
+  ChannelState state() const override { return channel_->state(); }
+  void close() override { channel_->close(); }
+  const std::string& name() const override { return channel_->name(); }
+
+ private:
+  std::shared_ptr<ByteChannel> channel_;
+};
+
+}  // namespace
+
+LmsScannerUnit::LmsScannerUnit(Opener opener, Clock& clock, LmsSettings settings)
+    : clock_(clock),
+      settings_(settings),
+      scanner_(
+          [this, opener = std::move(opener)]() -> Result<std::unique_ptr<ByteChannel>> {
+            channel_.reset();
+            auto opened = opener();
+            if (!opened) return fail(opened.error());
+            channel_ = std::move(*opened);
+            return std::make_unique<SharedChannel>(channel_);
+          },
+          clock, settings) {}
+
+LmsScannerUnit::~LmsScannerUnit() = default;
+
+Status LmsScannerUnit::prepare(const JobControl& job) {
+  if (streaming_) return {};
+  job.tell(-1.0, "looking for the scanner");
+  auto report = scanner_.connect(job.stop);
+  if (job.stopRequested()) return fail(kCancelled, name_, "start it again");
+  if (!report) return fail(report.error());
+  name_ = report->type.text + " at " + report->port;
+  warnings_.insert(warnings_.end(), report->warnings.begin(), report->warnings.end());
+  if (report->configuration.plausible() && report->configuration.measuringMode() == MeasuringMode::Energy)
+    return fail("the scanner is set to send energies instead of distances", name_,
+                "set its measuring mode to 0");
+  geometry_ = scanner_.geometry();
+  const bool indices = report->configuration.plausible() && report->configuration.sendsIndices();
+  telegram_size_ = scanWireSize(scanner_.variant().values(), indices);
+  if (Status status = scanner_.startStream(LmsStream::Scans, job.stop); !status) return status;
+  streaming_ = true;
+  framer_.clear();
+  held_.reset();
+  recent_.clear();
+  told_ = false;
+  began_ = kNever;
+  last_byte_ = clock_.now();
+  return {};
+}
+
+Status LmsScannerUnit::receive() {
+  std::array<Byte, 1024> buffer;
+  while (true) {
+    const auto count = channel_->read(buffer, clock_.now());
+    if (!count) {
+      streaming_ = false;
+      return fail(count.error());
+    }
+    if (*count == 0) return {};
+    last_byte_ = clock_.now();
+    framer_.push(std::span(buffer).first(*count));
+  }
+}
+
+LineTimes LmsScannerUnit::timesOf(std::size_t bytes_here) {
+  const Duration scan = durationOf(kTurnS * scanner_.variant().turns());
+  const Instant by_bytes = last_byte_ - channel_->line().wireTime(bytes_here);
+  began_ = std::min(began_, by_bytes);
+  // Telegrams begin in the mirror's rhythm: what an earlier one tells of it holds for this one, whose own
+  // first bytes may have been held back.
+  for (const Instant earlier : recent_) {
+    const auto scans = (by_bytes - earlier + scan / 2) / scan;
+    began_ = std::min(began_, earlier + scans * scan);
+  }
+  return {began_ - scan - durationOf(settings_.latency_s), began_};
+}
+
+ScannerEvent LmsScannerUnit::spoiled(const char* why) {
+  told_ = false;
+  began_ = kNever;
+  return LineSpoiled{why};
+}
+
+Result<std::optional<ScannerEvent>> LmsScannerUnit::whole(const Telegram& telegram) {
+  if (telegram.command() == command::kPowerOn) {
+    streaming_ = false;
+    return fail("the scanner was switched on just now: its power was interrupted", name_,
+                "look at its supply");
+  }
+  if (telegram.command() != kScanAnswer) return std::nullopt;  // late, of an earlier request
+  const LineTimes times = timesOf(telegram.wireSize());
+  const bool announced = std::exchange(told_, false);
+  recent_.push_back(began_);
+  if (recent_.size() > kRecent) recent_.erase(recent_.begin());
+  began_ = kNever;
+  auto measurement = parseMeasurement(telegram);
+  if (!measurement || static_cast<int>(measurement->values.size()) != geometry_.columns)
+    return ScannerEvent(LineSpoiled{"it is no scan of the kind that was asked for"});
+  LmsLine line;
+  line.raw = std::move(*measurement);
+  line.variant = scanner_.variant();
+  line.status.raw = line.raw.status;
+  if (scanner_.report().configuration.plausible())
+    line.measuring_mode = scanner_.report().configuration.measuringMode();
+  if (Status status = fillCells(line); !status) return fail(status.error());
+  for (std::string& warning : warningsOf(line.status))
+    if (std::ranges::find(warnings_, warning) == warnings_.end()) warnings_.push_back(std::move(warning));
+  LineTaken taken{times, std::move(line.range_m), std::move(line.code), std::move(line.intensity)};
+  if (announced) return ScannerEvent(std::move(taken));
+  // It came in one heap: its beginning is told first all the same.
+  held_ = std::move(taken);
+  return ScannerEvent(LineBegun{times});
+}
+
+// The first bytes of a telegram that looks like a scan of the size it should have.
+std::optional<ScannerEvent> LmsScannerUnit::beginning() {
+  const auto start = framer_.start();
+  if (start.size() < 5) return std::nullopt;
+  const LineTimes times = timesOf(start.size());
+  if (told_ || start[4] != kScanAnswer || word(start, 2) + kOverhead != telegram_size_) return std::nullopt;
+  told_ = true;
+  bad_then_ = framer_.counts().bad_checksum;
+  return LineBegun{times};
+}
+
+Result<std::optional<ScannerEvent>> LmsScannerUnit::poll() {
+  if (!streaming_) return fail("the scanner is not ready", name_, "prepare it first");
+  if (held_) return std::exchange(held_, std::nullopt);
+  if (Status status = receive(); !status) return fail(status.error());
+  while (auto token = framer_.next()) {
+    const auto* telegram = std::get_if<Telegram>(&*token);
+    if (!telegram) continue;
+    auto event = whole(*telegram);
+    if (!event || *event) return event;
+  }
+  if (told_ && framer_.counts().bad_checksum != bad_then_)
+    return std::optional(spoiled("its checksum is wrong"));
+  if (framer_.waiting() && clock_.now() - last_byte_ >= durationOf(kByteGapS)) {
+    framer_.giveUpFirst();
+    if (told_) return std::optional(spoiled("it was cut off"));
+    began_ = kNever;
+    return std::nullopt;
+  }
+  if (!framer_.waiting()) {
+    began_ = kNever;
+    return std::nullopt;
+  }
+  return beginning();
+}
+
+Status LmsScannerUnit::release() {
+  if (!std::exchange(streaming_, false)) return {};
+  return scanner_.stopStream();
+}
+
+std::vector<std::string> LmsScannerUnit::takeWarnings() {
+  return std::exchange(warnings_, {});
+}
+
+}  // namespace tiltmap

@@ -1,0 +1,121 @@
+#include "core/geometry/pose.h"
+#include "hardware/capture/instruments.h"
+#include "hardware/capture/lms_scanner_unit.h"
+#include "hardware/tilt/mip50_unit.h"
+#include "hardware/transport/device_url.h"
+
+namespace tiltmap {
+
+namespace {
+
+constexpr int kScannerBaud = 38400;
+constexpr int kTiltBaud = 19200;
+constexpr double kScannerLatencyS = 0.002;
+
+// The limits of a tilt from ?min= and ?max=, degrees.
+Status readLimits(const DeviceUrl& url, double& minimum_rad, double& maximum_rad) {
+  const auto low = url.number("min", -180.0, 180.0), high = url.number("max", -180.0, 180.0);
+  if (!low) return fail(low.error());
+  if (!high) return fail(high.error());
+  if (*low) minimum_rad = **low * kDegree;
+  if (*high) maximum_rad = **high * kDegree;
+  if (!(minimum_rad < maximum_rad))
+    return fail("min does not lie below max", url.text(), "give them in degrees");
+  return {};
+}
+
+Result<LmsSettings> lmsSettings(const DeviceUrl& url) {
+  LmsSettings settings;
+  const auto baud = url.integer("baud", 9600, 500000);
+  if (!baud) return fail(baud.error());
+  settings.baud = baud->value_or(kScannerBaud);
+  const auto angle = url.integer("angle", 90, 180);
+  if (!angle) return fail(angle.error());
+  const auto resolution = url.number("resolution", 0.25, 1.0);
+  if (!resolution) return fail(resolution.error());
+  settings.variant = {angle->value_or(180), static_cast<int>(resolution->value_or(0.5) * 100.0 + 0.5)};
+  const auto latency = url.number("latency", 0.0, 100.0);
+  if (!latency) return fail(latency.error());
+  settings.latency_s = *latency ? 0.001 * **latency : kScannerLatencyS;
+  if (const auto unit = url.option("unit")) {
+    if (*unit != "cm" && *unit != "mm")
+      return fail("unit=" + *unit + " is none", url.text(), "give unit=cm or unit=mm");
+    settings.unit = *unit == "cm" ? lms2xx::Unit::Centimetre : lms2xx::Unit::Millimetre;
+  }
+  return settings;
+}
+
+struct TiltSettings {
+  TiltDrive drive;
+  Mip50Table table;
+  int axis = 1;
+};
+
+Result<TiltSettings> mip50Settings(const DeviceUrl& url) {
+  TiltSettings settings;
+  if (const auto file = url.option("profile")) {
+    auto table = readMip50Table(*file);
+    if (!table) return fail(table.error());
+    settings.table = std::move(*table);
+  }
+  const auto axis = url.integer("axis", 1, 127);
+  if (!axis) return fail(axis.error());
+  settings.axis = axis->value_or(1);
+  const auto level = url.number("level", -1e9, 1e9);
+  if (!level) return fail(level.error());
+  settings.drive.level_count = static_cast<std::int64_t>(level->value_or(0.0));
+  const auto counts = url.number("counts", -1e9, 1e9);
+  if (!counts) return fail(counts.error());
+  if (*counts) settings.drive.counts_per_turn = **counts;
+  if (Status status = readLimits(url, settings.drive.minimum_rad, settings.drive.maximum_rad); !status)
+    return fail(status.error());
+  if (Status status = settings.drive.check(); !status)
+    return fail(status.error().what, url.text(), status.error().remedy);
+  return settings;
+}
+
+Result<std::function<Result<std::unique_ptr<TiltUnit>>()>> tiltOpener(const DeviceUrl& url, RealClock& clock,
+                                                                      AskOperator ask) {
+  if (url.scheme == "manual") {
+    if (!ask)
+      return fail("there is nobody here to set the tilt by hand", url.text(),
+                  "capture with `tiltmap capture` in a terminal, or name a motor: mip50:PORT");
+    double low = TiltDrive{}.minimum_rad, high = TiltDrive{}.maximum_rad;
+    if (Status status = readLimits(url, low, high); !status) return fail(status.error());
+    return [&clock, ask, low, high]() -> Result<std::unique_ptr<TiltUnit>> {
+      return std::make_unique<ManualTiltUnit>(clock, ask, low, high);
+    };
+  }
+  auto settings = mip50Settings(url);
+  if (!settings) return fail(settings.error());
+  return [url, &clock, s = *settings]() -> Result<std::unique_ptr<TiltUnit>> {
+    auto channel = openChannel(url, kTiltBaud, clock);
+    if (!channel) return fail(channel.error());
+    return std::make_unique<Mip50Unit>(std::move(*channel), clock, s.drive, s.table, s.axis);
+  };
+}
+
+}  // namespace
+
+Result<Instruments> namedInstruments(const std::string& scanner_url, const std::string& tilt_url,
+                                     RealClock& clock, AskOperator ask) {
+  const auto scanner = parseDeviceUrl(scanner_url, scannerSchemes());
+  if (!scanner) return fail(scanner.error());
+  const auto tilt = parseDeviceUrl(tilt_url, tiltSchemes());
+  if (!tilt) return fail(tilt.error());
+  const auto settings = lmsSettings(*scanner);
+  if (!settings) return fail(settings.error());
+  auto opener = tiltOpener(*tilt, clock, std::move(ask));
+  if (!opener) return fail(opener.error());
+  Instruments instruments;
+  instruments.clock = &clock;
+  instruments.open_tilt = std::move(*opener);
+  instruments.open_scanner = [url = *scanner, s = *settings,
+                              &clock]() -> Result<std::unique_ptr<ScannerUnit>> {
+    return std::make_unique<LmsScannerUnit>([url, &clock] { return openChannel(url, kScannerBaud, clock); },
+                                            clock, s);
+  };
+  return instruments;
+}
+
+}  // namespace tiltmap

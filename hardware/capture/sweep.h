@@ -1,0 +1,75 @@
+// Stop-and-scan: one stop's lines, each measured while the tilt stands still.
+#pragma once
+
+#include <functional>
+#include <future>
+#include <memory>
+#include <vector>
+
+#include "core/project/project.h"
+#include "core/scan/scanner_geometry.h"
+#include "hardware/capture/scanner_unit.h"
+#include "hardware/tilt/tilt_unit.h"
+
+namespace tiltmap {
+
+// How the instruments are reached, again and again where they get lost.
+struct Instruments {
+  Clock* clock = nullptr;
+  std::function<Result<std::unique_ptr<ScannerUnit>>()> open_scanner;
+  std::function<Result<std::unique_ptr<TiltUnit>>()> open_tilt;
+};
+
+struct SweepSettings {
+  // What fails is tried again; so long after the first failure without a new line, and the sweep gives up.
+  double patience_s = 60.0;
+  double first_pause_s = 1.0, longest_pause_s = 10.0;  // between tries to reach an instrument
+  double silence_s = 3.0;                              // a scanner that sends nothing for so long is lost
+};
+
+struct SweepReport {
+  int taken = 0;       // lines of this sweep
+  int spoiled = 0;     // begun, and taken again
+  int recoveries = 0;  // instruments found anew
+  double duration_s =
+      0.0;  // on the instruments' clock, from the first way to the first line on to the last byte
+  double slowest_store_s = 0.0;  // real time, from a line's last byte until it was durable
+  std::vector<std::string> warnings;
+};
+
+// Keeps the instruments between stops, so that home is searched once.
+class Sweep {
+ public:
+  using Store = std::function<std::future<Status>(int row, ScanLine line)>;
+
+  Sweep(Instruments instruments, SweepSettings settings);
+  ~Sweep();
+  Sweep(const Sweep&) = delete;
+  Sweep& operator=(const Sweep&) = delete;
+
+  // Scanner and tilt found and ready: what the geometry's columns and azimuths must be is known afterwards.
+  Status prepare(const JobControl& job);
+  ScannerGeometry geometry(int lines, double start_rad, double step_rad) const;
+
+  // Takes every row of the geometry that `taken` does not have, in one sweep upwards and, for rows that were
+  // spoiled, further ones. When it returns, successfully or not, every line handed to `store` has been
+  // stored or has failed to be. Cancelling stops the tilt within 200 ms.
+  Result<SweepReport> run(const ScannerGeometry& geometry, std::vector<bool> taken, const Store& store,
+                          const JobControl& job);
+  // Puts the instruments to rest.
+  Status release();
+  // Of both instruments, "LMS291;S05 at /dev/ttyUSB0, MIP 50 at ...".
+  std::string instrumentNames() const;
+
+ private:
+  struct Run;
+  Status recover(const Error& why, Run& run);
+  void noteWarnings(std::vector<std::string>& warnings);
+
+  Instruments instruments_;
+  SweepSettings settings_;
+  std::unique_ptr<ScannerUnit> scanner_;
+  std::unique_ptr<TiltUnit> tilt_;
+};
+
+}  // namespace tiltmap

@@ -1,0 +1,71 @@
+// Both instruments of the thesis' rig, emulated: the scanner on the tilt, at a stop of a simulated drive.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/world/experiment.h"
+#include "hardware/emulator/lms_emulator.h"
+#include "hardware/emulator/mip50_emulator.h"
+
+namespace tiltmap {
+
+struct RigSettings {
+  // The sweep that lines are expected of. A line measured at such a tilt has the noise that the simulation
+  // gives that row; the scanner itself does not know rows.
+  double start_rad = -0.52359877559829887308;  // -30 deg
+  double step_rad = 0.01396263401595463662;    // 0.8 deg
+  LmsBeam beam;
+  LmsEmulatorSettings scanner;
+  Mip50EmulatorSettings tilt;
+};
+
+// What the scanner sees from a stop.
+class RigView : public SiteView {
+ public:
+  RigView(Experiment experiment, const RigSettings& settings);
+  // Throws std::out_of_range for a stop that the drive does not have.
+  void moveTo(int stop);
+  int stop() const { return stop_; }
+  std::vector<Echo> line(const ScannerGeometry& geometry, const TiltFunction& tilt, double start_time_s,
+                         std::uint64_t key) override;
+  // What is truly measured at a tilt that stands still: to compare with what was stored.
+  std::vector<Echo> truth(const ScannerGeometry& geometry, double tilt_rad) const;
+
+ private:
+  RandomStream noise(double tilt_rad) const;
+  Experiment experiment_;
+  double start_rad_, step_rad_;
+  LmsBeam beam_;
+  int stop_ = 0;
+  std::shared_ptr<const Site> site_;
+};
+
+class EmulatedRig {
+ public:
+  // Booted, at the first stop. The clock must outlive it; the wires as long as they are plugged in.
+  EmulatedRig(Clock& clock, Experiment experiment, RigSettings settings, DeviceWire& scanner_wire,
+              DeviceWire& tilt_wire);
+
+  // While nothing acts.
+  Status moveTo(int stop);
+  int stop() const { return view_.stop(); }
+  const Experiment& experiment() const { return experiment_; }
+  // A fault of either instrument by its word, as faultNames() lists them.
+  Status fault(const std::string& text);
+  static std::vector<std::string> faultNames();
+
+  LmsEmulator& scanner() { return scanner_; }
+  Mip50Emulator& tilt() { return tilt_; }
+  const RigView& view() const { return view_; }
+
+ private:
+  Experiment experiment_;
+  RigView view_;
+  Mip50Emulator tilt_;
+  LmsEmulator scanner_;
+};
+
+}  // namespace tiltmap

@@ -1,0 +1,28 @@
+// Comparing what a capture stored with what the emulated site truly gave at the tilt that was read back.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/project/project.h"
+#include "hardware/emulator/rig.h"
+
+namespace tiltmap::test {
+
+// Empty where the line is what the site gives at its tilt, beam by beam; else what differs.
+inline std::string differsFromSite(const RigView& view, const ScannerGeometry& geometry, double tilt_rad,
+                                   const float* range_m, const CellCode* code) {
+  const std::vector<Echo> truth = view.truth(geometry, tilt_rad);
+  for (std::size_t j = 0; j < truth.size(); ++j)
+    if (truth[j].code != code[j] || std::abs(truth[j].range_m - range_m[j]) > 1e-5F)
+      return "beam " + std::to_string(j) + " has " + std::to_string(range_m[j]) + " m, code " +
+             std::to_string(code[j]) + " instead of " + std::to_string(truth[j].range_m) + " m, code " +
+             std::to_string(truth[j].code);
+  return {};
+}
+
+// How far the tilt of a row may be from where it was sent.
+inline constexpr double kTiltToleranceRad = 0.0004;
+
+}  // namespace tiltmap::test
