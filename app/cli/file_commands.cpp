@@ -1,8 +1,7 @@
 // tiltmap copy|merge|compact|verify P.tiltmap ...: projects as files.
-#include <filesystem>
-
 #include "app/cli/operation_runner.h"
 #include "core/base/text.h"
+#include "core/project/operations/merge_operation.h"
 
 namespace tiltmap::cli {
 
@@ -49,26 +48,16 @@ int verify(Context& context, const FileWords& words) {
 }
 
 int merge(Context& context, const FileWords& words) {
-  std::error_code error;
-  if (std::filesystem::equivalent(words.project, words.other, error))
-    return context.console.failed(
-        {"a project cannot be merged with itself", words.other, "name another one"});
-  const auto other = readProject(words.other);
-  if (!other) return context.console.failed(other.error());
+  std::optional<Pose> placement;
+  if (words.at.size() == 3) placement = Pose::planar(words.at[0], words.at[1], words.at[2] * kDegree);
   std::vector<std::string> warnings;
   return editCommand(
       context, words.project,
-      [&](const SnapshotPtr& into) -> Result<ProjectEdit> {
-        std::optional<Pose> placement = mergePlacement(*into, **other);
-        if (words.at.size() == 3) placement = Pose::planar(words.at[0], words.at[1], words.at[2] * kDegree);
-        if (!placement)
-          warnings.push_back(
-              "the projects do not tell how they stand to each other: the other's stop 0 is put where this "
-              "one's is "
-              "(tell it with --at X Y HEADING, or register pairs between the two)");
-        if (into->projectId() == (*other)->projectId())
-          warnings.push_back("one project is a copy of the other: stops that both have are there twice now");
-        return mergeEdit(*into, **other, placement.value_or(Pose()));
+      [&](const SnapshotPtr& into) {
+        return mergeProjects(into, words.other, placement).map([&](OperationResult result) {
+          warnings = std::move(result.warnings);
+          return std::move(result.edit);
+        });
       },
       &warnings);
 }

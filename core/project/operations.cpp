@@ -3,6 +3,7 @@
 #include "core/project/operation.h"
 #include "core/project/operations/export_operation.h"
 #include "core/project/operations/import_operation.h"
+#include "core/project/operations/merge_operation.h"
 #include "core/project/operations/register_operation.h"
 #include "core/project/operations/relax_operation.h"
 #include "core/project/operations/simulate_operation.h"
@@ -21,6 +22,7 @@ OperationRegistry& registered() {
     all.add(makeExportOperation());
     all.add(makeRenameOperation());
     all.add(makeRebaseOperation());
+    all.add(makeMergeOperation());
     return all;
   }();
   return registry;

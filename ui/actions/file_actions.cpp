@@ -4,6 +4,7 @@
 #include <QStandardPaths>
 #include <QWidget>
 
+#include "core/project/operations/merge_operation.h"
 #include "ui/actions/action_registry.h"
 #include "ui/actions/demo_project.h"
 #include "ui/actions/window_commands.h"
@@ -41,6 +42,28 @@ void askSaveAs(WindowCommands& window) {
               });
 }
 
+void askCopy(WindowCommands& window) {
+  Workspace& workspace = window.workspace();
+  askForFiles(
+      window.widget(), workspace.preferences(),
+      {FileQuestion::Save, "Save a copy of the project", kProjectFilter, "tiltmap", "projects",
+       workspace.session().name() + "-copy.tiltmap"},
+      [&workspace](const QStringList& files) {
+        if (workspace.session().saveCopy(files.front()))
+          workspace.messages().note("Copied to " + files.front() + "; this window stays with the original.");
+      });
+}
+
+// Only what cannot be undone asks.
+void askCompact(Workspace& workspace) {
+  workspace.messages().show(
+      {MessageKind::Warning,
+       "Compacting ends undo.",
+       "What was done before can then no longer be taken back, and deleted scans are gone.",
+       {},
+       "file.compact-now"});
+}
+
 void compact(Workspace& workspace) {
   QApplication::setOverrideCursor(Qt::WaitCursor);
   const auto report = workspace.session().compact();
@@ -53,11 +76,22 @@ void compact(Workspace& workspace) {
           .arg(sizeText(saved), sizeText(report->bytes_after)));
 }
 
+// As a job: a project of many gigabytes takes a while.
 void verify(Workspace& workspace) {
-  QApplication::setOverrideCursor(Qt::WaitCursor);
-  const Status status = workspace.session().verify();
-  QApplication::restoreOverrideCursor();
-  if (status) workspace.messages().note("Every page and every matrix of the project file is sound.");
+  JobRequest request;
+  request.operation = &verifyOperation();
+  const auto started = workspace.start(request);
+  if (!started) return;
+  const auto connection = std::make_shared<QMetaObject::Connection>();
+  *connection = QObject::connect(
+      &workspace.jobs(), &JobQueue::finished, &workspace,
+      [&workspace, connection, job = *started](int finished) {
+        if (finished != job) return;
+        QObject::disconnect(*connection);
+        const JobStatus* status = workspace.jobs().find(job);
+        if (status && status->phase == JobPhase::Accepted)
+          workspace.messages().note("Every page and every matrix of the project file is sound.");
+      });
 }
 
 }  // namespace
@@ -66,7 +100,6 @@ void addFileActions(ActionRegistry& actions, WindowCommands& window) {
   Workspace& workspace = window.workspace();
   const ProjectSession& session = workspace.session();
   const auto open = [&session] { return session.isOpen(); };
-  const auto writable = [&session] { return session.isWritable(); };
   const auto idle = [&workspace] { return workspace.session().isWritable() && !workspace.jobs().busy(); };
 
   actions.add({"file.new", "&New project…", "Make an empty project file; everything is stored as you go",
@@ -86,7 +119,14 @@ void addFileActions(ActionRegistry& actions, WindowCommands& window) {
                {},
                [&window] { askNew(window, Perspective::Capture); }});
   actions.add({"file.save-as", "Save &as…", "Write the whole project elsewhere and go on in the copy",
-               "document-save-as", QKeySequence::SaveAs, [&window] { askSaveAs(window); }, open});
+               "document-save-as", QKeySequence("Ctrl+Shift+S"), [&window] { askSaveAs(window); }, open});
+  actions.add({"file.copy",
+               "Save a co&py…",
+               "Write the whole project elsewhere, history included, and go on in this one",
+               "edit-copy",
+               {},
+               [&window] { askCopy(window); },
+               open});
   actions.add({"file.refresh", "&Read again",
                "For a project opened for reading: what its writer has stored since", "view-refresh",
                QKeySequence::Refresh, [&workspace] { (void)workspace.session().refresh(); },
@@ -94,6 +134,13 @@ void addFileActions(ActionRegistry& actions, WindowCommands& window) {
   actions.add({"file.compact",
                "Com&pact",
                "Give back the space of what was deleted; what was done before can then no longer be undone",
+               "archive-insert",
+               {},
+               [&workspace] { askCompact(workspace); },
+               idle});
+  actions.add({"file.compact-now",
+               "Compact now",
+               "Give back the space of what was deleted, without asking; undo ends here",
                "archive-insert",
                {},
                [&workspace] { compact(workspace); },
@@ -104,7 +151,7 @@ void addFileActions(ActionRegistry& actions, WindowCommands& window) {
                "dialog-ok-apply",
                {},
                [&workspace] { verify(workspace); },
-               writable});
+               open});
   actions.add({"file.close", "&Close project", "Close the project; everything is stored already",
                "document-close", QKeySequence::Close, [&workspace] { workspace.session().close(); }, open});
   actions.add({"file.new-window", "New &window", "Another window, for another project", "window-new",

@@ -30,6 +30,8 @@ void addHelpActions(ActionRegistry& actions, WindowCommands& window) {
                  window.workspace().messages().note("Copied: " + logFilePath());
                },
                [] { return !logFilePath().isEmpty(); }});
+  actions.add({"help.shortcuts", "&Shortcuts", "Every action with its keys, and what it does",
+               "input-keyboard", QKeySequence("Ctrl+F1"), [&window] { window.showShortcuts(); }});
   actions.add({"help.about",
                "&About Tiltmap",
                "Version, and the libraries with their licences",

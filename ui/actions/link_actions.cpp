@@ -56,6 +56,19 @@ void addLinkActions(ActionRegistry& actions, WindowCommands& window) {
                {},
                [&workspace] { setState(workspace, LinkState::Active); },
                [&workspace] { return anyLinkIn(workspace, LinkState::Disabled); }});
+  actions.add({"link.accept",
+               "&Accept link",
+               "Vouch for the selected links: registering again leaves them as they are",
+               "dialog-ok",
+               {},
+               [&workspace] {
+                 (void)workspace.session().apply(
+                     acceptLinksEdit(*workspace.snapshot(), workspace.selection().links()));
+               },
+               [&workspace] {
+                 return workspace.session().isWritable() && !workspace.jobs().busy() &&
+                        !acceptLinksEdit(*workspace.snapshot(), workspace.selection().links()).empty();
+               }});
   actions.add(
       {"link.register",
        "Re&gister again…",

@@ -26,6 +26,7 @@ const std::map<std::string, OperationLook>& looks() {
       {"relax", {"relax", "Ctrl+L", true}},
       {"export", {"document-export", "Ctrl+E", false}},
       {"rebase", {"crosshairs", "", true}},
+      {"merge", {"list-add", "", true}},
   };
   return known;
 }

@@ -2,6 +2,7 @@
 #include "core/project/stage.h"
 #include "ui/actions/action_registry.h"
 #include "ui/actions/window_commands.h"
+#include "ui/models/edits.h"
 #include "ui/models/project_words.h"
 #include "ui/models/strings.h"
 #include "ui/models/workspace.h"
@@ -76,6 +77,16 @@ void addStageActions(ActionRegistry& actions, Workspace& workspace) {
                [&workspace] { workspace.display().setStage({}); },
                [&workspace] { return workspace.session().isOpen(); },
                [&workspace] { return !workspace.display().chosenStage(); }});
+  actions.add({"stage.clear",
+               "&Take these poses out",
+               "Take the poses of the stage that is shown out of the project; undo brings them back",
+               "edit-delete",
+               {},
+               [&workspace] { (void)workspace.session().apply(clearStageEdit(workspace.display().stage())); },
+               [&workspace] {
+                 return workspace.session().isWritable() && !workspace.jobs().busy() &&
+                        workspace.display().stage() != Stage::Odometry;
+               }});
   int key = 1;
   for (const Stage stage : kStages)
     actions.add(

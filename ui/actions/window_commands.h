@@ -32,6 +32,9 @@ class WindowCommands {
   virtual void showCommandPalette() = 0;
   virtual void showPreferences() = 0;
   virtual void showAbout() = 0;
+  virtual void showShortcuts() = 0;
+  virtual void showColours() = 0;
+  virtual void showSurvey() = 0;
   virtual void newWindow() = 0;
   virtual void closeNow() = 0;  // without asking: what runs is cancelled
   // In the tree: the current scan's name becomes editable.

@@ -3,10 +3,14 @@
 #include <QPainter>
 #include <QStyleFactory>
 #include <QStyleOption>
+#include <algorithm>
 
 namespace tiltmap::ui {
 
 namespace {
+
+constexpr int kLargeControl_px = 36;
+constexpr int kLargeRow_px = 30;
 
 // Between the ground and the text; 42 % is about 3 : 1 to the ground, light or dark.
 QColor frameColour(const QPalette& palette, int percent = 42) {
@@ -50,7 +54,51 @@ void drawCheck(const QStyleOption& option, QPainter& painter) {
 
 }  // namespace
 
-Style::Style() : QProxyStyle(QStyleFactory::create("Fusion")) {}
+Style::Style(bool large) : QProxyStyle(QStyleFactory::create("Fusion")), large_(large) {}
+
+int Style::pixelMetric(PixelMetric metric, const QStyleOption* option, const QWidget* widget) const {
+  const int usual = QProxyStyle::pixelMetric(metric, option, widget);
+  if (!large_) return usual;
+  switch (metric) {
+    case PM_IndicatorWidth:
+    case PM_IndicatorHeight:
+    case PM_ExclusiveIndicatorWidth:
+    case PM_ExclusiveIndicatorHeight:
+    case PM_ScrollBarExtent:
+    case PM_SmallIconSize:
+    case PM_ButtonIconSize:
+      return std::max(usual, 22);
+    case PM_SplitterWidth:
+      return std::max(usual, 8);
+    default:
+      return usual;
+  }
+}
+
+QSize Style::sizeFromContents(ContentsType type, const QStyleOption* option, const QSize& contents,
+                              const QWidget* widget) const {
+  QSize size = QProxyStyle::sizeFromContents(type, option, contents, widget);
+  if (!large_) return size;
+  switch (type) {
+    case CT_PushButton:
+    case CT_ToolButton:
+    case CT_ComboBox:
+    case CT_LineEdit:
+    case CT_SpinBox:
+      size.setHeight(std::max(size.height(), kLargeControl_px));
+      break;
+    case CT_MenuItem:
+    case CT_ItemViewItem:
+      size.setHeight(std::max(size.height(), kLargeRow_px));
+      break;
+    case CT_MenuBarItem:
+      size.setHeight(std::max(size.height(), kLargeRow_px));
+      break;
+    default:
+      break;
+  }
+  return size;
+}
 
 void Style::drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
                           const QWidget* widget) const {

@@ -11,6 +11,8 @@ namespace tiltmap::ui {
 
 namespace {
 
+constexpr double kLargeFont = 1.2;
+
 void setAll(QPalette& palette,
             const std::initializer_list<std::pair<QPalette::ColorRole, const char*>>& roles) {
   for (const auto& [role, colour] : roles) palette.setColor(role, QColor(colour));
@@ -18,7 +20,61 @@ void setAll(QPalette& palette,
 
 }  // namespace
 
-QPalette Theme::palette(bool dark) {
+namespace {
+
+QPalette highContrastPalette() {
+  QPalette palette;
+  setAll(palette, {{QPalette::Window, "#ffffff"},
+                   {QPalette::WindowText, "#000000"},
+                   {QPalette::Base, "#ffffff"},
+                   {QPalette::AlternateBase, "#f0f0f0"},
+                   {QPalette::Text, "#000000"},
+                   {QPalette::Button, "#ffffff"},
+                   {QPalette::ButtonText, "#000000"},
+                   {QPalette::BrightText, "#ffffff"},
+                   {QPalette::Light, "#ffffff"},
+                   {QPalette::Midlight, "#d0d0d0"},
+                   {QPalette::Mid, "#606060"},
+                   {QPalette::Dark, "#202020"},
+                   {QPalette::Shadow, "#000000"},
+                   {QPalette::ToolTipBase, "#ffffff"},
+                   {QPalette::ToolTipText, "#000000"},
+                   {QPalette::Highlight, "#00337f"},
+                   {QPalette::HighlightedText, "#ffffff"},
+                   {QPalette::Link, "#00337f"},
+                   {QPalette::LinkVisited, "#4a148c"},
+                   {QPalette::PlaceholderText, "#404040"}});
+  for (const auto role :
+       {QPalette::WindowText, QPalette::Text, QPalette::ButtonText, QPalette::HighlightedText})
+    palette.setColor(QPalette::Disabled, role, QColor("#6a6a6a"));
+  palette.setColor(QPalette::Disabled, QPalette::Highlight, QColor("#d0d0d0"));
+  return palette;
+}
+
+ThemeColours highContrastColours() {
+  ThemeColours c;
+  c.accent = "#00337f";
+  c.muted = "#303030";
+  c.good = "#004d00";
+  c.warning = "#5c3700";
+  c.error = "#8b0000";
+  c.warning_ground = "#ffe9a8";
+  c.error_ground = "#ffd9d6";
+  c.note_ground = "#d6ecff";
+  c.line = "#5a5a5a";
+  c.view_top = "#ffffff";
+  c.view_bottom = "#ffffff";
+  c.view_text = "#000000";
+  c.view_grid = "#707070";
+  c.no_data = "#b0b0b0";
+  return c;
+}
+
+}  // namespace
+
+QPalette Theme::palette(Look look) {
+  if (look == Look::HighContrast) return highContrastPalette();
+  const bool dark = look == Look::Dark;
   QPalette palette;
   if (dark) {
     setAll(palette, {{QPalette::Window, "#23272b"},
@@ -71,7 +127,9 @@ QPalette Theme::palette(bool dark) {
   return palette;
 }
 
-ThemeColours Theme::coloursOf(bool dark) {
+ThemeColours Theme::coloursOf(Look look) {
+  if (look == Look::HighContrast) return highContrastColours();
+  const bool dark = look == Look::Dark;
   ThemeColours c;
   c.accent = dark ? "#35b3c6" : "#0e7285";
   c.muted = dark ? "#a7b0b7" : "#566068";
@@ -106,7 +164,7 @@ Theme::Theme(Preferences& preferences, QObject* parent) : QObject(parent), prefe
   findIcons();
   const QPalette system = QApplication::palette();
   system_dark_ = system.color(QPalette::Window).lightness() < system.color(QPalette::WindowText).lightness();
-  QApplication::setStyle(new Style);
+  ordinary_font_ = QApplication::font();
   apply();
   connect(&preferences, &Preferences::themeChanged, this, [this] {
     apply();
@@ -116,11 +174,19 @@ Theme::Theme(Preferences& preferences, QObject* parent) : QObject(parent), prefe
 
 void Theme::apply() {
   const ThemeChoice choice = preferences_.theme();
-  dark_ = choice == ThemeChoice::Dark || (choice == ThemeChoice::System && system_dark_);
-  colours_ = coloursOf(dark_);
-  QIcon::setThemeName(dark_ ? "breeze-dark" : "breeze");
-  QApplication::setPalette(palette(dark_));
-  QToolTip::setPalette(palette(dark_));
+  const bool dark = choice == ThemeChoice::Dark || (choice == ThemeChoice::System && system_dark_);
+  look_ = choice == ThemeChoice::HighContrast ? Look::HighContrast : dark ? Look::Dark : Look::Light;
+  colours_ = coloursOf(look_);
+  const bool large = look_ == Look::HighContrast;
+  QFont font = ordinary_font_;
+  if (large) font.setPointSizeF(font.pointSizeF() * kLargeFont);
+  if (font != QApplication::font()) QApplication::setFont(font);
+  if (!styled_ || large != large_) QApplication::setStyle(new Style(large));
+  styled_ = true;
+  large_ = large;
+  QIcon::setThemeName(dark && !large ? "breeze-dark" : "breeze");
+  QApplication::setPalette(palette(look_));
+  QToolTip::setPalette(palette(look_));
 }
 
 }  // namespace tiltmap::ui

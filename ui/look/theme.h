@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QColor>
+#include <QFont>
 #include <QObject>
 #include <QPalette>
 
@@ -26,6 +27,8 @@ struct ThemeColours {
   QColor no_data;  // cells without a point
 };
 
+enum class Look { Light, Dark, HighContrast };
+
 // Applies itself to the application: style, palette, icon theme. Follows the preference, and where that says
 // so the system's palette at the start of the program.
 class Theme : public QObject {
@@ -34,10 +37,11 @@ class Theme : public QObject {
  public:
   explicit Theme(Preferences& preferences, QObject* parent = nullptr);
 
-  bool isDark() const { return dark_; }
+  Look look() const { return look_; }
+  bool isDark() const { return look_ == Look::Dark; }
   const ThemeColours& colours() const { return colours_; }
-  static QPalette palette(bool dark);
-  static ThemeColours coloursOf(bool dark);
+  static QPalette palette(Look look);
+  static ThemeColours coloursOf(Look look);
 
  Q_SIGNALS:
   void changed();
@@ -47,7 +51,9 @@ class Theme : public QObject {
 
   Preferences& preferences_;
   bool system_dark_ = false;
-  bool dark_ = false;
+  Look look_ = Look::Light;
+  bool styled_ = false, large_ = false;
+  QFont ordinary_font_;  // as the desktop has it
   ThemeColours colours_;
 };
 

@@ -47,6 +47,20 @@ ProjectEdit linkStatesEdit(const ProjectSnapshot& snapshot, const std::vector<Li
   return edit;
 }
 
+ProjectEdit acceptLinksEdit(const ProjectSnapshot& snapshot, const std::vector<LinkId>& links) {
+  ProjectEdit edit;
+  std::size_t accepted = 0;
+  for (const LinkId id : links) {
+    const Link* link = snapshot.findLink(id);
+    if (!link || !link->succeeded || link->origin == LinkOrigin::ByHand) continue;
+    ProjectEdit one = acceptLinkEdit(*link);
+    edit.title = ++accepted == 1 ? "accept link " + linkName(snapshot, *link)
+                                 : "accept " + std::to_string(accepted) + " links";
+    std::ranges::move(one.steps, std::back_inserter(edit.steps));
+  }
+  return edit;
+}
+
 ProjectEdit clearStageEdit(Stage stage) {
   ProjectEdit edit;
   edit.title = "clear " + stageName(stage) + " poses";

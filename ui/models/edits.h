@@ -13,6 +13,9 @@ ProjectEdit reorderEdit(const ProjectSnapshot& snapshot, const std::vector<ScanI
 ProjectEdit deleteLinksEdit(const ProjectSnapshot& snapshot, const std::vector<LinkId>& links);
 ProjectEdit linkStatesEdit(const ProjectSnapshot& snapshot, const std::vector<LinkId>& links,
                            LinkState state);
+// A person vouches for them: registering again leaves them alone. Links without a result, and those that are
+// a person's own already, are left out.
+ProjectEdit acceptLinksEdit(const ProjectSnapshot& snapshot, const std::vector<LinkId>& links);
 // Takes the stage's poses away. Not odometry: every scan has one.
 ProjectEdit clearStageEdit(Stage stage);
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kRecentFiles = 10;
 constexpr const char* kRecent = "files/recent";
-const QStringList kThemeNames = {"system", "light", "dark"};
+const QStringList kThemeNames = {"system", "light", "dark", "high-contrast"};
 const QStringList kUnitNames = {"m", "mm", "ft"};
 
 }  // namespace

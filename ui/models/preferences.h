@@ -11,7 +11,8 @@
 
 namespace tiltmap::ui {
 
-enum class ThemeChoice { System, Light, Dark };
+// HighContrast: black on white with large controls, for sunlight and gloves.
+enum class ThemeChoice { System, Light, Dark, HighContrast };
 
 // The parameters an operation was last started with.
 struct LastParameters {

@@ -36,10 +36,11 @@ Status ProjectSession::refused(Error error) {
   return fail(std::move(error));
 }
 
-Status ProjectSession::adopt(Result<std::unique_ptr<Project>> project) {
+Status ProjectSession::adopt(Result<std::unique_ptr<Project>> project, std::optional<Error> why_read_only) {
   if (!project) return refused(project.error());
   if (project_) close();
   project_ = std::move(*project);
+  why_read_only_ = std::move(why_read_only);
   snapshot_ = project_->snapshot();
   Q_EMIT opened();
   Q_EMIT snapshotReplaced();
@@ -50,9 +51,10 @@ Status ProjectSession::open(const QString& path) {
   if (project_ && QFileInfo(path) == QFileInfo(this->path())) return {};
   auto writable = Project::open(pathOf(path), Access::ReadWrite);
   if (writable) return adopt(std::move(writable));
+  const Error why = writable.error();
   auto readable = Project::open(pathOf(path), Access::ReadOnly);
   // Why it cannot be written tells more than why it cannot be read, unless both fail.
-  return readable ? adopt(std::move(readable)) : refused(writable.error());
+  return readable ? adopt(std::move(readable), why) : refused(why);
 }
 
 Status ProjectSession::create(const QString& path) {
@@ -71,6 +73,12 @@ void ProjectSession::close() {
 Status ProjectSession::saveAs(const QString& path) {
   if (!project_) return refused(nothingOpen());
   return adopt(project_->saveAs(pathOf(path)));
+}
+
+Status ProjectSession::saveCopy(const QString& path) {
+  if (!project_) return refused(nothingOpen());
+  Status status = project_->saveCopy(pathOf(path));
+  return status ? status : refused(status.error());
 }
 
 Result<CompactReport> ProjectSession::compact() {

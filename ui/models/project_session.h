@@ -4,6 +4,7 @@
 #include <QObject>
 #include <QString>
 #include <memory>
+#include <optional>
 
 #include "core/project/job.h"
 #include "core/project/project.h"
@@ -21,6 +22,8 @@ class ProjectSession : public QObject {
 
   bool isOpen() const { return project_ != nullptr; }
   bool isWritable() const;
+  // Of a project that is open for reading: why it is not for writing.
+  const std::optional<Error>& whyReadOnly() const { return why_read_only_; }
   QString path() const;
   QString name() const;  // "demo", without folder and extension; empty with no project
   SnapshotPtr snapshot() const { return snapshot_; }  // nothing with no project
@@ -32,6 +35,8 @@ class ProjectSession : public QObject {
   void close();
   // Writes the whole project elsewhere and goes on in the copy.
   Status saveAs(const QString& path);
+  // Writes the whole project elsewhere and goes on in this one.
+  Status saveCopy(const QString& path);
   Result<CompactReport> compact();
   Status verify();
   // For a project opened for reading: what its writer has stored since.
@@ -61,12 +66,13 @@ class ProjectSession : public QObject {
   void failed(const tiltmap::Error& error);
 
  private:
-  Status adopt(Result<std::unique_ptr<Project>> project);
+  Status adopt(Result<std::unique_ptr<Project>> project, std::optional<Error> why_read_only = {});
   Status refused(Error error);
   Status settle(const Result<Change>& change);
 
   std::unique_ptr<Project> project_;
   SnapshotPtr snapshot_;
+  std::optional<Error> why_read_only_;
 };
 
 }  // namespace tiltmap::ui

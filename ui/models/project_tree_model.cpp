@@ -3,6 +3,7 @@
 #include <QDataStream>
 #include <QFont>
 #include <QIODevice>
+#include <QIcon>
 #include <QMimeData>
 #include <QPainter>
 #include <QPixmap>
@@ -170,7 +171,8 @@ QVariant ProjectTreeModel::groupData(TreeItem::Kind group, int column, int role)
 
 namespace {
 
-QPixmap swatch(const QColor& colour) {
+// The same where its row is selected: a tinted swatch would be another scan's colour.
+QIcon swatch(const QColor& colour) {
   // Drawn at 2x: sharp on both kinds of screens.
   QPixmap pixmap(32, 32);
   pixmap.fill(Qt::transparent);
@@ -181,7 +183,9 @@ QPixmap swatch(const QColor& colour) {
   painter.drawRoundedRect(QRectF(4, 4, 24, 24), 6, 6);
   painter.end();
   pixmap.setDevicePixelRatio(2.0);
-  return pixmap;
+  QIcon icon(pixmap);
+  icon.addPixmap(pixmap, QIcon::Selected);
+  return icon;
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ namespace tiltmap::ui {
 
 namespace {
 
+constexpr double kUsualLine_px = 15.0;  // the height of a line of text that the margins are meant for
 constexpr double kLeft = 40.0, kRight = 66.0, kTop = 12.0, kBottom = 34.0;
 constexpr double kBarWidth = 12.0;
 constexpr double kMostZoom = 64.0;
@@ -71,7 +72,11 @@ void DepthView::redraw() {
 }
 
 QRectF DepthView::room() const {
-  return QRectF(rect()).adjusted(kLeft, kTop, -kRight, -kBottom);
+  // Room for the axes' texts, of which two lines stand below.
+  const QFontMetricsF metrics(font());
+  const double larger = std::max(1.0, metrics.height() / kUsualLine_px);
+  return QRectF(rect()).adjusted(kLeft * larger, kTop, -kRight * larger,
+                                 -std::max(kBottom, 2.0 * metrics.height() + 8.0));
 }
 
 QRectF DepthView::whole() const {

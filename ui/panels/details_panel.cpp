@@ -38,6 +38,7 @@ DetailsPanel::DetailsPanel(const PanelContext& context, QWidget* parent)
       note_(new QPlainTextEdit(this)) {
   text_->setObjectName("details-text");
   text_->setAccessibleName("Details of the selection");
+  text_->setToolTip("What is known about the selected scan or link; text can be selected and copied");
   text_->setFrameShape(QFrame::NoFrame);
   text_->setOpenLinks(false);
   text_->document()->setDocumentMargin(8);

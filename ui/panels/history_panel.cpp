@@ -19,6 +19,7 @@ HistoryPanel::HistoryPanel(const PanelContext& context, QWidget* parent)
       view_(new TableView(this)) {
   view_->setObjectName("history-view");
   view_->setAccessibleName("History of edits");
+  view_->setToolTip("Every edit, the latest below; a double click goes back or forth to one");
   view_->setModel(model_);
   view_->setSelectionMode(QAbstractItemView::SingleSelection);
   view_->horizontalHeader()->setSectionResizeMode(HistoryModel::What, QHeaderView::Stretch);

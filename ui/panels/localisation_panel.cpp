@@ -56,9 +56,9 @@ LocalisationPanel::LocalisationPanel(const PanelContext& context, QWidget* paren
   export_->setObjectName("localisation-export");
   view_->setObjectName("localisation-view");
   view_->setAccessibleName("Localisation table");
+  view_->setToolTip("Where the stops are at the stage chosen above; Ctrl+C copies the selected rows");
   view_->setModel(model_);
-  view_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
-  view_->horizontalHeader()->setSectionResizeMode(LocalisationModel::Stop, QHeaderView::ResizeToContents);
+  view_->setEvenColumns();
   view_->horizontalHeader()->setMinimumSectionSize(48);
 
   auto* bar = new QHBoxLayout;

@@ -23,6 +23,7 @@ LogPanel::LogPanel(const PanelContext& context, QWidget* parent)
   filter->setFilterCaseSensitivity(Qt::CaseInsensitive);
   view_->setObjectName("log-view");
   view_->setAccessibleName("Log");
+  view_->setToolTip("What the program did; Ctrl+C copies the selected lines");
   view_->setModel(filter);
   view_->horizontalHeader()->setStretchLastSection(true);
   view_->setColumnWidth(LogModel::Time, fontMetrics().horizontalAdvance("00:00:00.000") + 24);

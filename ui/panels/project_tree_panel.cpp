@@ -22,6 +22,7 @@ ProjectTreePanel::ProjectTreePanel(const PanelContext& context, QWidget* parent)
                             context.actions.get("op.import"), this)) {
   view_->setObjectName("project-tree-view");
   view_->setAccessibleName("Project tree");
+  view_->setToolTip("Scans, links and results; the right button shows what can be done with each");
   view_->setModel(model_);
   view_->setSelectionMode(QAbstractItemView::ExtendedSelection);
   view_->setEditTriggers(QAbstractItemView::EditKeyPressed | QAbstractItemView::SelectedClicked);
@@ -111,14 +112,26 @@ void ProjectTreePanel::showMenu(const QPoint& at) {
   const auto item = model_->itemAt(view_->indexAt(at));
   QStringList ids;
   if (item && item->kind == TreeItem::Kind::Scan)
-    ids = QStringList{"view.show",   "view.hide", "view.show-only", "view.show-all",  "",
-                      "edit.rename", "edit.note", "edit.move-up",   "edit.move-down", "",
+    ids = QStringList{"view.show",
+                      "view.hide",
+                      "view.show-only",
+                      "view.show-all",
+                      "",
+                      "edit.rename",
+                      "edit.note",
+                      "edit.colour",
+                      "edit.colour-default",
+                      "edit.move-up",
+                      "edit.move-down",
+                      "edit.rebase",
+                      "",
                       "edit.delete"};
   else if (item && item->kind == TreeItem::Kind::Link)
-    ids = QStringList{"link.show", "link.register", "", "link.disable", "link.enable", "", "edit.delete"};
+    ids = QStringList{"link.show",    "link.register", "", "link.accept",
+                      "link.disable", "link.enable",   "", "edit.delete"};
   else if (item && (item->kind == TreeItem::Kind::Stage || item->kind == TreeItem::Kind::StagesGroup))
     ids = QStringList{"stage.latest", "stage.truth", "stage.odometry", "stage.pairwise", "stage.relaxed", "",
-                      "op.export"};
+                      "stage.clear",  "op.export"};
   else
     ids = QStringList{"op.import", "op.simulate", "op.register", "", "edit.select-all", "view.show-all"};
   context_.actions.refresh();

@@ -4,6 +4,7 @@
 #include <QClipboard>
 #include <QHeaderView>
 #include <QKeyEvent>
+#include <algorithm>
 
 namespace tiltmap::ui {
 
@@ -37,6 +38,28 @@ QString TableView::selectedText() const {
     text += cells.join('\t') + "\n";
   }
   return text;
+}
+
+void TableView::setEvenColumns() {
+  even_columns_ = true;
+  connect(model(), &QAbstractItemModel::modelReset, this, &TableView::fitColumns);
+  fitColumns();
+}
+
+void TableView::fitColumns() {
+  if (!even_columns_) return;
+  int widest = 0;
+  const int columns = horizontalHeader()->count();
+  for (int c = 0; c < columns; ++c)
+    widest = std::max({widest, horizontalHeader()->sectionSizeHint(c), sizeHintForColumn(c)});
+  const bool fits = widest * columns <= viewport()->width();
+  horizontalHeader()->setSectionResizeMode(fits ? QHeaderView::Stretch : QHeaderView::ResizeToContents);
+  horizontalHeader()->setStretchLastSection(!fits);
+}
+
+void TableView::resizeEvent(QResizeEvent* event) {
+  QTableView::resizeEvent(event);
+  fitColumns();
 }
 
 void TableView::copy() const {

@@ -3,6 +3,7 @@
 #include <QDialogButtonBox>
 #include <QHeaderView>
 #include <QLabel>
+#include <QPushButton>
 #include <QTableWidget>
 #include <QVBoxLayout>
 
@@ -55,6 +56,7 @@ AboutDialog::AboutDialog(QWidget* parent) : QDialog(parent) {
   auto* table = new QTableWidget(static_cast<int>(std::size(kLibraries)), 3, this);
   table->setObjectName("libraries");
   table->setAccessibleName("Libraries and their licences");
+  table->setToolTip("What the program is built on, and under which licence");
   table->setHorizontalHeaderLabels({"Library", "Used for", "Licence"});
   table->setEditTriggers(QAbstractItemView::NoEditTriggers);
   table->setSelectionBehavior(QAbstractItemView::SelectRows);
@@ -75,6 +77,7 @@ AboutDialog::AboutDialog(QWidget* parent) : QDialog(parent) {
   log->setTextInteractionFlags(Qt::TextSelectableByMouse);
   log->setWordWrap(true);
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close, this);
+  buttons->button(QDialogButtonBox::Close)->setToolTip("Close this window");
   connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::close);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(16, 16, 16, 16);

@@ -57,6 +57,7 @@ CommandPalette::CommandPalette(ActionRegistry& actions, QWidget* parent)
   search_->installEventFilter(this);
   list_->setObjectName("palette-list");
   list_->setAccessibleName("Commands found");
+  list_->setToolTip("Enter or a click runs a command; grey ones cannot be run now");
   list_->setFocusPolicy(Qt::NoFocus);
   list_->setUniformItemSizes(true);
   list_->setIconSize(QSize(16, 16));

@@ -183,7 +183,7 @@ void DockArea::showEvent(QShowEvent* event) {
 
 void DockArea::restyle() {
   const ThemeColours& c = context_.theme.colours();
-  const QPalette p = Theme::palette(context_.theme.isDark());
+  const QPalette p = Theme::palette(context_.theme.look());
   manager_->setStyleSheet(QString(R"(
     ads--CDockContainerWidget { background: %1; }
     ads--CDockContainerWidget > QSplitter { padding: 0; }

@@ -15,13 +15,16 @@
 #include "ui/panels/details_panel.h"
 #include "ui/panels/project_tree_panel.h"
 #include "ui/window/about_dialog.h"
+#include "ui/window/colour_dialog.h"
 #include "ui/window/command_palette.h"
 #include "ui/window/dock_area.h"
 #include "ui/window/job_bar.h"
 #include "ui/window/message_bar.h"
 #include "ui/window/operation_dialog.h"
 #include "ui/window/preferences_dialog.h"
+#include "ui/window/shortcuts_dialog.h"
 #include "ui/window/start_page.h"
+#include "ui/window/survey_dialog.h"
 
 namespace tiltmap::ui {
 
@@ -102,14 +105,16 @@ void MainWindow::showProject() {
   const bool open = workspace_->session().isOpen();
   pages_->setCurrentWidget(open ? static_cast<QWidget*>(docks_) : start_page_);
   refreshTitle();
-  if (open && !workspace_->session().isWritable())
-    workspace_->messages().show(
-        {MessageKind::Warning,
-         "This project is open for reading only.",
-         "Another program writes it, or it lies where nothing can be written; save it under another "
-         "name to go on.",
-         {},
-         "file.save-as"});
+  if (!open || workspace_->session().isWritable()) return;
+  QString reason = "Nothing can be written there";
+  if (const auto& why = workspace_->session().whyReadOnly()) reason = qt(why->what);
+  reason[0] = reason[0].toUpper();
+  workspace_->messages().show(
+      {MessageKind::Warning,
+       "This project is open for reading only.",
+       reason + ". Save it under another name to go on; Read again shows what its writer has stored.",
+       {},
+       "file.save-as"});
 }
 
 void MainWindow::refreshTitle() {
@@ -184,6 +189,18 @@ void MainWindow::showPreferences() {
 
 void MainWindow::showAbout() {
   showOne<QDialog>(about_dialog_, [this] { return new AboutDialog(this); });
+}
+
+void MainWindow::showShortcuts() {
+  showOne<QDialog>(shortcuts_dialog_, [this] { return new ShortcutsDialog(actions_, this); });
+}
+
+void MainWindow::showColours() {
+  showOne<QDialog>(colour_dialog_, [this] { return new ColourDialog(*workspace_, this); });
+}
+
+void MainWindow::showSurvey() {
+  showOne<QDialog>(survey_dialog_, [this] { return new SurveyDialog(*workspace_, this); });
 }
 
 void MainWindow::newWindow() {

@@ -45,6 +45,9 @@ class MainWindow : public QMainWindow, public WindowCommands {
   void showCommandPalette() override;
   void showPreferences() override;
   void showAbout() override;
+  void showShortcuts() override;
+  void showColours() override;
+  void showSurvey() override;
   void newWindow() override;
   void closeNow() override;
   void beginRename() override;
@@ -78,6 +81,9 @@ class MainWindow : public QMainWindow, public WindowCommands {
   std::map<QString, QPointer<OperationDialog>> operation_dialogs_;
   QPointer<QDialog> preferences_dialog_;
   QPointer<QDialog> about_dialog_;
+  QPointer<QDialog> shortcuts_dialog_;
+  QPointer<QDialog> colour_dialog_;
+  QPointer<QDialog> survey_dialog_;
 };
 
 }  // namespace tiltmap::ui

@@ -25,8 +25,8 @@ void fill(QMenu* menu, const ActionRegistry& actions, const QStringList& ids) {
 
 // Operations that no menu names (new ones) come where they are seen: under Register.
 QStringList otherOperations() {
-  static const QStringList kPlaced = {"simulate", "capture", "import", "register", "relax",  "export",
-                                      "rebase",   "rename", "report",   "picture"};
+  static const QStringList kPlaced = {"simulate", "capture", "import", "register", "relax", "export",
+                                      "rebase",   "rename",  "report", "picture",  "merge"};
   QStringList ids;
   for (const Operation* operation : operations().all())
     if (!kPlaced.contains(qt(operation->id()))) ids << "op." + qt(operation->id());
@@ -42,11 +42,12 @@ void MainWindow::makeMenus() {
   recent->setObjectName("recent-menu");
   connect(recent, &QMenu::aboutToShow, this, [this, recent] { fillRecent(recent); });
   fill(project, actions_,
-       {"file.demo", "", "op.import", "op.simulate", "", "file.save-as", "file.refresh", "file.compact",
-        "file.verify", "", "file.close", "file.new-window", "file.quit"});
+       {"file.demo", "", "op.import", "op.simulate", "op.merge", "", "file.save-as", "file.copy",
+        "file.refresh", "file.compact", "file.verify", "", "file.close", "file.new-window", "file.quit"});
   fill(menuBar()->addMenu("&Edit"), actions_,
-       {"edit.undo", "edit.redo", "", "edit.rename", "edit.note", "edit.move-up", "edit.move-down",
-        "edit.delete", "", "edit.select-all", "", "edit.preferences"});
+       {"edit.undo", "edit.redo", "", "edit.rename", "edit.note", "edit.colour", "edit.colour-default",
+        "edit.move-up", "edit.move-down", "edit.rebase", "edit.delete", "", "edit.survey", "",
+        "edit.select-all", "", "edit.preferences"});
   QMenu* view = menuBar()->addMenu("&View");
   fill(view, actions_,
        {"perspective.capture", "perspective.inspect", "perspective.register", "perspective.relax", ""});
@@ -55,18 +56,20 @@ void MainWindow::makeMenus() {
   fill(panel_menu, actions_, {"", "view.reset-layout"});
   QMenu* stage = view->addMenu("&Stage shown");
   fill(stage, actions_,
-       {"stage.latest", "", "stage.truth", "stage.odometry", "stage.pairwise", "stage.relaxed"});
+       {"stage.latest", "", "stage.truth", "stage.odometry", "stage.pairwise", "stage.relaxed", "",
+        "stage.clear"});
   fill(view, actions_, {"", "view.show-all", "view.show-only", "view.show", "view.hide", "", "view.palette"});
   fill(menuBar()->addMenu("&Capture"), actions_, {"file.capture", "op.capture", "", "op.import", "op.simulate"});
   QMenu* registering = menuBar()->addMenu("&Register");
   fill(registering, actions_, {"op.register", "op.rebase"});
   fill(registering, actions_, otherOperations());
-  fill(registering, actions_, {"", "link.show", "link.register", "link.disable", "link.enable"});
+  fill(registering, actions_,
+       {"", "link.show", "link.register", "link.accept", "link.disable", "link.enable"});
   fill(menuBar()->addMenu("Re&lax"), actions_, {"op.relax", "", "job.cancel"});
   fill(menuBar()->addMenu("E&xport"), actions_,
        {"op.export", "op.report", "op.picture", "panel.localisation"});
   fill(menuBar()->addMenu("&Help"), actions_,
-       {"view.palette", "", "help.log-folder", "help.copy-log-path", "", "help.about"});
+       {"view.palette", "help.shortcuts", "", "help.log-folder", "help.copy-log-path", "", "help.about"});
 }
 
 void MainWindow::makeToolBar() {

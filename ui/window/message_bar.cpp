@@ -64,10 +64,12 @@ MessageBar::MessageBar(Messages& messages, ActionRegistry& actions, const Theme&
   action_->setObjectName("message-action");
   action_->setFocusPolicy(Qt::StrongFocus);
   action_->setToolTip("What helps");
+  action_->setAccessibleName("What helps");
   action_->setToolButtonStyle(Qt::ToolButtonTextOnly);
   fold_->setCheckable(true);
   details_->setObjectName("message-details-text");
   details_->setAccessibleName("Details of the message");
+  details_->setToolTip("Details of the message; text can be selected and copied");
   details_->setReadOnly(true);
   details_->setMaximumHeight(fontMetrics().height() * 7);
   auto* close = flatButton("message-close", {}, "Close this message", this);
@@ -114,6 +116,7 @@ void MessageBar::show(const Message& message) {
   action_->setVisible(action);
   if (action) {
     action_->setText(action->iconText());
+    action_->setAccessibleName(action->iconText());
     action_->setToolTip(action->toolTip());
   }
   details_->setPlainText(message.details);

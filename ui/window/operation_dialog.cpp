@@ -109,6 +109,11 @@ OperationDialog::OperationDialog(const Operation& operation, Workspace& workspac
   layout->addWidget(check_);
   layout->addLayout(buttons);
 
+  std::vector<QWidget*> order = form_->focusOrder();
+  order.insert(order.begin(), {preset_, search});
+  order.insert(order.end(), {reset_, close, run_});
+  for (std::size_t k = 1; k < order.size(); ++k) setTabOrder(order[k - 1], order[k]);
+
   connect(preset_, qOverload<int>(&QComboBox::activated), this,
           [this](int row) { model_->setPreset(preset_->itemText(row)); });
   connect(search, &QLineEdit::textChanged, form_, &ParameterForm::filter);

@@ -146,11 +146,16 @@ ParameterEditor* textEditor(const Operation& operation, const ParameterInfo& inf
     for (const Stage stage : kStages) stages.push_back(stageName(stage));
     return new ChoiceEditor(stages, "latest", parent);
   }
-  static const std::map<std::string, QString> kEmpty = {
-      {"pairs", "every scan with the one before it"}, {"scans", "all"}, {"pin", "none"}};
+  static const std::map<std::string, QString> kEmpty = {{"at", "as known from the frame of both"},
+                                                        {"pairs", "every scan with the one before it"},
+                                                        {"scans", "all"},
+                                                        {"pin", "none"}};
   const auto empty = kEmpty.find(info.name);
   auto* line = new LineEditor(false, empty == kEmpty.end() ? QString() : empty->second, parent);
-  if (info.name == "file")
+  if (info.name == "file" && operation.id() == "merge")
+    line->addBrowse({FileQuestion::OpenOne, "Project to merge", kProjectFilter, {}, "projects", {}},
+                    preferences);
+  else if (info.name == "file")
     line->addBrowse(
         {FileQuestion::Save,
          qt(operation.title()),

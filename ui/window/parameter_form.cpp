@@ -31,6 +31,7 @@ ParameterForm::ParameterForm(ParameterModel& model, Preferences& preferences, co
     row.label->setBuddy(editor);
     row.unit = new QLabel(qt(info.unit), this);
     row.reset = new QToolButton(this);
+    row.reset->setToolTip("Back to what the preset says");
     row.reset->setIcon(icon("edit-reset"));
     row.reset->setAutoRaise(true);
     row.reset->setObjectName("reset:" + name);
@@ -98,6 +99,17 @@ void ParameterForm::filter(const QString& text) {
 QWidget* ParameterForm::editor(const QString& parameter) const {
   const auto found = rows_.find(parameter);
   return found == rows_.end() ? nullptr : found->second.editor->focusProxy();
+}
+
+std::vector<QWidget*> ParameterForm::focusOrder() const {
+  std::vector<QWidget*> order;
+  for (const ParameterInfo& info : model_.infos()) {
+    const Row& row = rows_.at(qt(info.name));
+    for (QWidget* part : row.editor->findChildren<QWidget*>(QString(), Qt::FindDirectChildrenOnly))
+      if (part->focusPolicy() & Qt::TabFocus) order.push_back(part);
+    order.push_back(row.reset);
+  }
+  return order;
 }
 
 }  // namespace tiltmap::ui

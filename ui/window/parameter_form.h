@@ -3,6 +3,7 @@
 
 #include <QWidget>
 #include <map>
+#include <vector>
 
 class QLabel;
 class QToolButton;
@@ -24,6 +25,8 @@ class ParameterForm : public QWidget {
   // Only rows whose label, help or name hold the text; all for an empty one.
   void filter(const QString& text);
   QWidget* editor(const QString& parameter) const;
+  // Everything that takes the focus, from the top to the bottom.
+  std::vector<QWidget*> focusOrder() const;
 
  private:
   struct Row {

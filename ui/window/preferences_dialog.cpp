@@ -39,8 +39,9 @@ QLabel* path(const QString& text, QWidget* parent) {
 PreferencesDialog::PreferencesDialog(Preferences& preferences, QWidget* parent) : QDialog(parent) {
   setObjectName("preferences");
   setWindowTitle("Preferences");
-  auto* theme = choice("theme", {"As the system", "Light", "Dark"}, static_cast<int>(preferences.theme()),
-                       "Colours of the window", this);
+  auto* theme = choice("theme", {"As the system", "Light", "Dark", "High contrast, large controls"},
+                       static_cast<int>(preferences.theme()),
+                       "Colours of the window; high contrast is for sunlight and gloves", this);
   auto* unit = choice("length-unit", {"Metres (m)", "Millimetres (mm)", "Feet (ft)"},
                       static_cast<int>(preferences.lengthUnit()),
                       "Unit of lengths in tables and panels; files and the project itself keep metres", this);
@@ -65,6 +66,7 @@ PreferencesDialog::PreferencesDialog(Preferences& preferences, QWidget* parent) 
         field->setAccessibleName(QString(label->text()).remove('&'));
 
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close, this);
+  buttons->button(QDialogButtonBox::Close)->setToolTip("Close this form; every choice holds already");
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(16, 16, 16, 16);
   layout->setSpacing(16);

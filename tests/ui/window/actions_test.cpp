@@ -166,9 +166,11 @@ TEST_F(ActionsTest, TwoWindowsHaveTwoProjects) {
 TEST_F(ActionsTest, ChecksAndCompactsTheFile) {
   makeProject(3);
   ASSERT_TRUE(trigger("file.verify"));
-  EXPECT_EQ(workspace().messages().latest()->kind, MessageKind::Note);
+  ASSERT_TRUE(waitForJobs());
+  settle();
+  EXPECT_TRUE(workspace().messages().latest()->text.contains("is sound"));
   must(workspace().session().apply(deleteEdit(snapshot(), {id(0)})));
-  ASSERT_TRUE(trigger("file.compact"));
+  ASSERT_TRUE(trigger("file.compact-now"));
   EXPECT_FALSE(workspace().session().canUndo());
   EXPECT_FALSE(isEnabled("edit.undo"));
 }
