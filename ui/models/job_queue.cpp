@@ -163,6 +163,11 @@ void JobQueue::conclude(Entry& e) {
     if (!cancelled) Q_EMIT failed(error);
     return startNext();
   }
+  if (e.cancelled) {
+    e.job->discard();
+    end(e, JobPhase::Cancelled);
+    return startNext();
+  }
   e.status.fraction = 1.0;
   e.status.warnings = result->warnings;
   e.status.report_json = result->report_json;
@@ -206,6 +211,7 @@ void JobQueue::cancel(int id) {
   if (!e) return;
   if (e->status.phase == JobPhase::Running) {
     e->job->cancel();
+    e->cancelled = true;
     e->status.message = "cancelling";
     Q_EMIT changed(id);
   } else if (e->status.phase == JobPhase::Queued) {

@@ -93,6 +93,7 @@ class JobQueue : public QObject {
     JobRequest request;
     JobStatus status;
     int batch = 0;
+    bool cancelled = false;  // asked for: a result that comes all the same is not wanted
     std::unique_ptr<Job> job;
     std::chrono::steady_clock::time_point started;
   };

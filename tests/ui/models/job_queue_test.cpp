@@ -64,6 +64,19 @@ TEST_F(JobQueueTest, CancellingLeavesTheProjectAsItWas) {
   EXPECT_EQ(snapshot().revision(), revision);
 }
 
+TEST_F(JobQueueTest, AResultThatComesAfterCancellingIsNotStored) {
+  makeProject(1);
+  HeldOperation work;
+  work.deaf = true;
+  const auto revision = snapshot().revision();
+  const int job = *workspace.start(request(work));
+  workspace.jobs().cancel(job);
+  work.released = true;
+  ASSERT_TRUE(over(job));
+  EXPECT_EQ(phase(job), JobPhase::Cancelled);
+  EXPECT_EQ(snapshot().revision(), revision);
+}
+
 TEST_F(JobQueueTest, RunsOneAfterTheOther) {
   makeProject(1);
   HeldOperation first("first"), second("second");

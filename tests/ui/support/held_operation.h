@@ -28,8 +28,9 @@ class HeldOperation : public Operation {
                               const JobControl& control) const override {
     ++runs;
     control.tell(0.5, "half way");
-    while (!released && !control.stopRequested()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    if (control.stopRequested()) return fail(kCancelled, "", "");
+    while (!released && (deaf || !control.stopRequested()))
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (!deaf && control.stopRequested()) return fail(kCancelled, "", "");
     if (broken) return fail("the work failed", "here", "try another way");
     OperationResult result;
     result.edit = renameEdit(snapshot->scans().front().id, new_name_);
@@ -39,6 +40,7 @@ class HeldOperation : public Operation {
 
   std::atomic<bool> released = false;
   bool broken = false;
+  bool deaf = false;  // to cancelling
   std::vector<std::string> warnings;
   mutable std::atomic<int> runs = 0;
 

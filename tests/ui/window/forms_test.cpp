@@ -75,6 +75,25 @@ TEST_F(FormsTest, SimulatesRegistersAndRelaxes) {
   EXPECT_FALSE(snapshot().hasStage(Stage::Relaxed));
 }
 
+TEST_F(FormsTest, CancellingARelaxationInTheMiddleLeavesEverything) {
+  makeProject(0);
+  OperationDialog* simulate = form("simulate");
+  simulate->setValues({{"experiment", std::string("exp2fixed")}});
+  run(simulate);
+  const auto revision = snapshot().revision();
+  OperationDialog* relax = form("relax");
+  // Not click(): that runs the event loop for as long as there is progress to show.
+  QTest::mouseClick(find("run", relax), Qt::LeftButton);
+  auto* cancel = find<QPushButton>("job-cancel");
+  ASSERT_TRUE(workspace().jobs().busy());
+  ASSERT_TRUE(cancel->isVisible());
+  QThread::msleep(50);
+  QTest::mouseClick(cancel, Qt::LeftButton);
+  ASSERT_TRUE(waitForJobs());
+  EXPECT_EQ(snapshot().revision(), revision);
+  EXPECT_FALSE(snapshot().hasStage(Stage::Relaxed));
+}
+
 TEST_F(FormsTest, MergesAnotherProject) {
   {
     const auto other = must(Project::create(folder / "other.tiltmap"));
