@@ -63,6 +63,7 @@ void addHistory(CLI::App& app, Chosen& chosen);  // undo, redo, history
 void addEdits(CLI::App& app, Chosen& chosen);    // rename, note, survey, delete, rebase
 void addPhoto(CLI::App& app, Chosen& chosen);
 void addLink(CLI::App& app, Chosen& chosen);
+void addSite(CLI::App& app, Chosen& chosen);  // pin, aerial
 void addFiles(CLI::App& app, Chosen& chosen);  // copy, merge, compact, verify
 void addScreenshot(CLI::App& app, Chosen& chosen);
 void addCapture(CLI::App& app, Chosen& chosen);

@@ -90,7 +90,7 @@ int run(int argc, char** argv) {
   Chosen chosen;
   for (const auto add : {addNew, addSimulate, addCapture, addEmulate, addImport, addInfo, addRegister, addRelax, addPoses,
                          addEvaluate, addExport, addParameters, addHistory, addEdits, addPhoto, addLink,
-                         addFiles, addDemo, addDevices, addScreenshot, addGui})
+                         addSite, addFiles, addDemo, addDevices, addScreenshot, addGui})
     add(app, chosen);
 
   try {

@@ -33,6 +33,8 @@ class ActiveSet {
 
   // In the order in which they came in.
   const std::vector<int>& active() const { return active_; }
+  const std::vector<int>& waiting() const { return static_; }  // ascending
+  const std::deque<int>& queue() const { return queue_; }
   // Ascending: scans that had no neighbour in the active set when they came in. They keep their poses.
   std::vector<int> unlinked() const;
   int visits(int scan) const { return visits_[static_cast<std::size_t>(scan)]; }

@@ -35,6 +35,7 @@ class ActiveSetRelaxation : public RelaxationEngine {
     const std::vector<Pose> before = poses_;
     const ActiveSet order_before = order_;
     if (counts_.empty()) buildTrees();
+    tellDoing("counting neighbours");
     recount(stop);
     const ActiveSetActions actions{[this](int a, int b) { return areNeighbours(a, b); },
                                    [&](int scan, const std::vector<int>& members, RelaxationStep& events) {
@@ -53,6 +54,14 @@ class ActiveSetRelaxation : public RelaxationEngine {
   }
 
   std::vector<int> unlinked() const override { return order_.unlinked(); }
+
+  RelaxationState state() const override {
+    RelaxationState now;
+    now.active = order_.active();
+    now.waiting = order_.waiting();
+    now.queue.assign(order_.queue().begin(), order_.queue().end());
+    return now;
+  }
 
   std::vector<RelaxationLink> links() const override {
     std::vector<RelaxationLink> list;
@@ -124,8 +133,11 @@ class ActiveSetRelaxation : public RelaxationEngine {
   PoseDifference align(int scan, const std::vector<int>& members, RelaxationStep& report,
                        const std::stop_token& stop) {
     const auto index = static_cast<std::size_t>(scan);
+    RelaxationState now;
+    if (isWatched()) now = state();
     const MetascanAlignment found =
-        alignToMetascan(input_.scans, poses_, members, scan, poses_[index], settings_.registration, stop);
+        alignToMetascan(input_.scans, poses_, members, scan, poses_[index], settings_.registration, stop,
+                        tellIterations(std::move(now), scan, members));
     RelaxationEvent event;
     event.kind = RelaxationEventKind::Aligned;
     event.scan = scan;

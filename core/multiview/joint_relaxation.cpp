@@ -43,12 +43,6 @@ constexpr double kLinkError_rad = 0.3 * kDegree;
 constexpr double kTurnArm_m = 10.0;  // a turn counts as the shift it makes at this distance
 constexpr double kFurthest = 6.0;    // a step of the settling is lengthened by at most so much
 
-std::string namesOf(const std::vector<int>& scans) {
-  std::string text;
-  for (const int scan : scans) text += (text.empty() ? "" : ", ") + std::to_string(scan);
-  return text;
-}
-
 class JointRelaxation : public RelaxationEngine {
  public:
   JointRelaxation(RelaxationInput input, const RelaxationSettings& settings, int threads)
@@ -70,6 +64,7 @@ class JointRelaxation : public RelaxationEngine {
     if (closing_) return close(report, stop);
     const bool settling = own_scale_steps_left_ == 0;
     if (!settling || candidates_.empty()) findCandidates(report);
+    tellDoing("measuring " + std::to_string(candidates_.size()) + " pairs of scans");
     std::vector<JointLink> links = measureLinks(candidates_, input_.scans, samples_, poses_,
                                                 settings_.registration, loss_, threads_, stop);
     if (stop.stop_requested()) return cancel(report);
@@ -83,6 +78,13 @@ class JointRelaxation : public RelaxationEngine {
     for (int i = 0; i < count(); ++i)
       if (!tied_[static_cast<std::size_t>(i)] && count() > 1) list.push_back(i);
     return list;
+  }
+
+  RelaxationState state() const override {
+    RelaxationState now;
+    for (int i = 0; i < count(); ++i)
+      (tied_[static_cast<std::size_t>(i)] ? now.active : now.waiting).push_back(i);
+    return now;
   }
 
   std::vector<RelaxationLink> links() const override {
@@ -118,6 +120,7 @@ class JointRelaxation : public RelaxationEngine {
 
   void close(RelaxationStep& report, const std::stop_token& stop) {
     findCandidates(report);
+    tellDoing("measuring " + std::to_string(candidates_.size()) + " pairs of scans");
     if (rounds_ == 0) takeOwnScale(stop);
     std::vector<JointLink> links = measureLinks(candidates_, input_.scans, samples_, poses_,
                                                 settings_.registration, loss_, threads_, stop);
@@ -187,6 +190,7 @@ class JointRelaxation : public RelaxationEngine {
       todo.push_back(&attempt);
       of.push_back(&link);
     }
+    if (!todo.empty()) tellDoing("registering " + std::to_string(todo.size()) + " pairs that do not fit yet");
     parallelFor(todo.size(), threads_, [&](std::size_t k) { registerByItself(*of[k], *todo[k], stop); });
     for (std::size_t k = 0; k < todo.size(); ++k) {
       RelaxationEvent event;

@@ -43,10 +43,15 @@ PreparedScanPtr metascan(std::span<const PreparedScanPtr> scans, std::span<const
 MetascanAlignment alignToMetascan(std::span<const PreparedScanPtr> scans,
                                   std::span<const Pose> world_from_scan, std::span<const int> members,
                                   int scan, const Pose& start_world_from_scan,
-                                  const RegistrationSettings& settings, const std::stop_token& stop) {
+                                  const RegistrationSettings& settings, const std::stop_token& stop,
+                                  const std::function<void(const Registration&)>& each) {
   const PreparedScanPtr model = metascan(scans, world_from_scan, members, start_world_from_scan, settings);
   Registration registration(model, scans[static_cast<std::size_t>(scan)], Pose(), settings);
-  while (!registration.done()) registration.step(stop);
+  if (each) each(registration);
+  while (!registration.done()) {
+    registration.step(stop);
+    if (each) each(registration);
+  }
   MetascanAlignment result;
   result.reason = *registration.stopReason();
   result.pairs = registration.keptPairs();

@@ -1,6 +1,7 @@
 // Several scans as one: the union of their elements, for registering another scan onto it.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <stop_token>
 
@@ -17,7 +18,8 @@ PreparedScanPtr metascan(std::span<const PreparedScanPtr> scans, std::span<const
                          std::span<const int> members, const Pose& world_from_frame,
                          const RegistrationSettings& settings);
 
-// How a registration onto a metascan ended: the new pose where it may be used, else the start.
+// How a registration onto a metascan ended: the new pose where it may be used, else the start. `each` is told
+// before the first iteration and after every one.
 struct MetascanAlignment {
   Pose world_from_scan;
   PoseDifference moved;
@@ -28,6 +30,7 @@ struct MetascanAlignment {
 MetascanAlignment alignToMetascan(std::span<const PreparedScanPtr> scans,
                                   std::span<const Pose> world_from_scan, std::span<const int> members,
                                   int scan, const Pose& start_world_from_scan,
-                                  const RegistrationSettings& settings, const std::stop_token& stop);
+                                  const RegistrationSettings& settings, const std::stop_token& stop,
+                                  const std::function<void(const Registration&)>& each = {});
 
 }  // namespace tiltmap

@@ -113,6 +113,39 @@ RelaxationEngine::RelaxationEngine(RelaxationInput input, const RelaxationSettin
   for (const int pin : input_.pins) pinned_[static_cast<std::size_t>(pin)] = 1;
 }
 
+void RelaxationEngine::tell(RelaxationState state) const {
+  if (!isWatched()) return;
+  state.step = watched_step_;
+  (*watcher_)(state);
+}
+
+void RelaxationEngine::tellDoing(const std::string& doing) const {
+  if (!isWatched()) return;
+  RelaxationState now = state();
+  now.doing = doing;
+  tell(std::move(now));
+}
+
+std::function<void(const Registration&)> RelaxationEngine::tellIterations(
+    RelaxationState now, int scan, const std::vector<int>& onto) const {
+  if (!isWatched()) return {};
+  now.aligning = scan;
+  now.onto = onto;
+  now.doing = "aligning scan " + std::to_string(scan) + " with " + namesOf(onto);
+  return [this, now = std::move(now)](const Registration& registration) mutable {
+    now.iteration = registration.iterations();
+    now.pairs = registration.keptPairs();
+    now.rms_m = registration.rms();
+    tell(now);
+  };
+}
+
+std::string namesOf(const std::vector<int>& scans) {
+  std::string text;
+  for (const int scan : scans) text += (text.empty() ? "" : ", ") + std::to_string(scan);
+  return text;
+}
+
 void RelaxationEngine::finish(RelaxationStep& report) {
   finished_ = true;
   report.fraction = 1.0;
@@ -141,11 +174,17 @@ bool Relaxation::done() const {
   return engine_->done();
 }
 
-RelaxationStep Relaxation::step(const std::stop_token& stop) {
+RelaxationStep Relaxation::step(const std::stop_token& stop, const RelaxationWatcher& watcher) {
   if (done()) throw std::logic_error("Relaxation::step: the relaxation has ended");
   const Clock::time_point begin = Clock::now();
   RelaxationStep report;
   report.number = ++steps_;
+  // The watcher is only sure to live as long as this step.
+  struct Watching {
+    RelaxationEngine& engine;
+    ~Watching() { engine.watchWith(nullptr, 0); }
+  } const watching{*engine_};
+  engine_->watchWith(&watcher, report.number);
   engine_->step(report, stop);
   report.milliseconds = millisecondsSince(begin);
   return report;
@@ -170,15 +209,22 @@ const std::vector<std::string>& Relaxation::warnings() const {
   return engine_->warnings();
 }
 
+RelaxationState Relaxation::state() const {
+  RelaxationState now = engine_->state();
+  now.step = steps_;
+  return now;
+}
+
 Result<RelaxationResult> relax(RelaxationInput input, const RelaxationSettings& settings, int threads,
-                               const JobControl& control) {
+                               const JobControl& control, const RelaxationWatch& watch) {
   const Clock::time_point begin = Clock::now();
   if (Status status = checkSettings(settings); !status) return fail(status.error());
   if (Status status = checkInput(input); !status) return fail(status.error());
   Relaxation relaxation(std::move(input), settings, threads);
   RelaxationResult result;
   while (!relaxation.done()) {
-    result.steps.push_back(relaxation.step(control.stop));
+    result.steps.push_back(relaxation.step(control.stop, watch.within));
+    if (watch.after) watch.after(relaxation, result.steps.back());
     control.tell(result.steps.back().fraction, "relaxing, step " + std::to_string(relaxation.steps()));
   }
   if (relaxation.cancelled())

@@ -1,6 +1,7 @@
 // Global relaxation as a value that one advances: while (!r.done()) record(r.step());
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -73,6 +74,25 @@ struct RelaxationStep {
   double fraction = 0.0;  // a guess of how much is done, 0 to 1, for progress
 };
 
+// What a relaxation is at, for whoever watches it. Scans by index.
+struct RelaxationState {
+  int step = 0;  // the one that runs, or that ran last
+  // Joint: tied to scan 0 or a pinned one at the last step. ActiveSet: in the order in which they came in.
+  // Sequential: those placed.
+  std::vector<int> active;
+  std::vector<int> waiting;  // not among them yet (the static set), ascending
+  std::vector<int> queue;    // ActiveSet: to be aligned, the next one first; Sequential: those to come
+  int aligning = -1;         // the scan that is being registered; -1: none
+  std::vector<int> onto;     // what it is registered onto
+  int iteration = 0;         // of that registration; 0 before its first
+  std::size_t pairs = 0;     // of its last iteration
+  double rms_m = 0.0;        // of its last iteration
+  std::string doing;         // "aligning scan 3 with 2, 4"; empty between two steps
+};
+// Called on the thread that steps, within a step; the relaxation goes on when it returns, so that it may
+// wait.
+using RelaxationWatcher = std::function<void(const RelaxationState&)>;
+
 // Two scans that overlap, as the result sees them.
 struct RelaxationLink {
   int fixed = 0;  // the lower index
@@ -105,7 +125,8 @@ class Relaxation {
   // Joint: one step of the whole problem. ActiveSet: one scan of the queue. Sequential: one scan. Throws
   // std::logic_error when done. A requested stop ends it as cancelled; the poses stay as the last whole step
   // left them.
-  RelaxationStep step(const std::stop_token& stop = {});
+  // What a watcher is told changes no bit of what is computed.
+  RelaxationStep step(const std::stop_token& stop = {}, const RelaxationWatcher& watcher = {});
 
   bool cancelled() const;
   const std::vector<Pose>& poses() const;  // world_from_scan
@@ -115,6 +136,7 @@ class Relaxation {
   // By (fixed, moving). Joint: of the last step. The others: neighbours of the last count, without figures.
   std::vector<RelaxationLink> links() const;
   const std::vector<std::string>& warnings() const;
+  RelaxationState state() const;  // between two steps
   int steps() const { return steps_; }
 
  private:
@@ -133,9 +155,15 @@ struct RelaxationResult {
   double milliseconds = 0.0;
 };
 
+// Told of a relaxation that somebody else steps; both on the thread that does. Either may be empty.
+struct RelaxationWatch {
+  RelaxationWatcher within;                                                  // a step
+  std::function<void(const Relaxation&, const RelaxationStep&)> after = {};  // each step
+};
+
 // Steps to the end. An Error where the settings are refused, an input is not usable, or it was cancelled.
 Result<RelaxationResult> relax(RelaxationInput input, const RelaxationSettings& settings, int threads = 0,
-                               const JobControl& control = {});
+                               const JobControl& control = {}, const RelaxationWatch& watch = {});
 
 // Prepares every scan, shared among the threads; the same bits for any number of them.
 Result<std::vector<PreparedScanPtr>> prepareAll(const std::vector<Scan>& scans,

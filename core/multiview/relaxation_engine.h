@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <set>
 #include <stop_token>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "core/multiview/relaxation.h"
+#include "core/registration/registration.h"
 
 namespace tiltmap {
 
@@ -21,6 +23,10 @@ class RelaxationEngine {
   virtual void step(RelaxationStep& report, const std::stop_token& stop) = 0;
   virtual std::vector<int> unlinked() const = 0;
   virtual std::vector<RelaxationLink> links() const = 0;
+  // Without the step's number, which the engine does not know.
+  virtual RelaxationState state() const = 0;
+  // Must outlive the steps it watches; null: nobody does.
+  void watchWith(const RelaxationWatcher* watcher, int step) { watcher_ = watcher, watched_step_ = step; }
 
   bool done() const { return finished_ || cancelled_; }
   bool cancelled() const { return cancelled_; }
@@ -38,6 +44,13 @@ class RelaxationEngine {
   const Pose& pose(int i) const { return poses_[static_cast<std::size_t>(i)]; }
   bool isPinned(int i) const { return pinned_[static_cast<std::size_t>(i)]; }
   bool isExcluded(int a, int b) const { return excluded_.contains(std::minmax(a, b)); }
+  bool isWatched() const { return watcher_ && *watcher_; }
+  void tell(RelaxationState state) const;
+  // state() with what is done now.
+  void tellDoing(const std::string& doing) const;
+  // For alignToMetascan: tells `now` with what the registration is at. Empty where nobody watches.
+  std::function<void(const Registration&)> tellIterations(RelaxationState now, int scan,
+                                                          const std::vector<int>& onto) const;
   void finish(RelaxationStep& report);
   void cancel(RelaxationStep& report);
 
@@ -49,7 +62,13 @@ class RelaxationEngine {
   std::set<std::pair<int, int>> excluded_;  // lower first
   std::vector<std::string> warnings_;
   bool finished_ = false, cancelled_ = false;
+
+ private:
+  const RelaxationWatcher* watcher_ = nullptr;
+  int watched_step_ = 0;
 };
+
+std::string namesOf(const std::vector<int>& scans);  // "2, 4"
 
 std::unique_ptr<RelaxationEngine> makeJointRelaxation(RelaxationInput input,
                                                       const RelaxationSettings& settings, int threads);

@@ -25,6 +25,16 @@ class SequentialRelaxation : public RelaxationEngine {
 
   std::vector<RelaxationLink> links() const override { return {}; }
 
+  RelaxationState state() const override {
+    RelaxationState now;
+    now.active = members_;
+    for (int i = next_; i < count(); ++i) {
+      now.waiting.push_back(i);
+      now.queue.push_back(i);
+    }
+    return now;
+  }
+
  private:
   // False where a stop came between; nothing has changed then.
   bool place(RelaxationStep& report, const std::stop_token& stop) {
@@ -42,8 +52,11 @@ class SequentialRelaxation : public RelaxationEngine {
     } else {
       // The scan before may have moved: it takes this one along.
       const Pose carried = pose(i - 1) * (startPoses()[index - 1].inverse() * startPoses()[index]);
+      RelaxationState now;
+      if (isWatched()) now = state();
       const MetascanAlignment found =
-          alignToMetascan(input_.scans, poses_, members_, i, carried, settings_.registration, stop);
+          alignToMetascan(input_.scans, poses_, members_, i, carried, settings_.registration, stop,
+                          tellIterations(std::move(now), i, members_));
       if (found.reason == StopReason::Cancelled) return false;
       poses_[index] = found.world_from_scan;
       RelaxationEvent& aligned = note(RelaxationEventKind::Aligned);

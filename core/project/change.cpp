@@ -23,6 +23,11 @@ bool sameBesidePoses(const ScanEntry& a, const ScanEntry& b) {
                             [](const auto& p, const auto& q) { return same(p, q); });
 }
 
+bool same(const std::optional<SitePicture>& a, const std::optional<SitePicture>& b) {
+  if (!a || !b) return !a && !b;
+  return a->attachment == b->attachment && sitePictureText(*a) == sitePictureText(*b);
+}
+
 // The stages at which the pose was added, removed or moved.
 void addChangedStages(const std::map<Stage, Pose>& a, const std::map<Stage, Pose>& b,
                       std::set<Stage>& stages) {
@@ -81,7 +86,8 @@ Change changeBetween(const ProjectSnapshot& before, const ProjectSnapshot& after
   change.stages_changed.assign(stages.begin(), stages.end());
   compareLinks(before, after, change);
   change.order_changed = commonOrder(before, after) != commonOrder(after, before);
-  change.survey_changed = !(before.survey() == after.survey());
+  change.survey_changed = !(before.survey() == after.survey()) || before.pins() != after.pins() ||
+                          !same(before.sitePicture(), after.sitePicture());
   change.jobs_changed = !std::ranges::equal(before.jobs(), after.jobs(), {}, &JobRecord::id, &JobRecord::id);
   return change;
 }

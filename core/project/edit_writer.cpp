@@ -223,16 +223,46 @@ void EditWriter::apply(const SetSurvey& step) {
                                                                 {"device", &step.survey.device},
                                                                 {"date", &step.survey.date},
                                                                 {"site_from_world", &site_frame}};
-  for (const auto& [key, value] : entries) {
-    if (value->empty()) {
-      database_.run("DELETE FROM survey WHERE key = ?", key);
-    } else {
-      database_.run(
-          "INSERT INTO survey(key, value) VALUES (?, ?) ON CONFLICT(key) DO UPDATE SET value = "
-          "excluded.value",
-          key, *value);
-    }
+  for (const auto& [key, value] : entries) setSurveyEntry(key, *value);
+}
+
+void EditWriter::setSurveyEntry(const char* key, const std::string& value) {
+  if (value.empty()) {
+    database_.run("DELETE FROM survey WHERE key = ?", key);
+  } else {
+    database_.run(
+        "INSERT INTO survey(key, value) VALUES (?, ?) ON CONFLICT(key) DO UPDATE SET value = "
+        "excluded.value",
+        key, value);
   }
+}
+
+void EditWriter::apply(const SetPins& step) {
+  std::set<ScanId> scans;
+  for (const ScanId scan : step.scans) scans.insert(resolved(scan));
+  std::string text;
+  for (const ScanId scan : scans) text += (text.empty() ? "" : " ") + std::to_string(scan);
+  setSurveyEntry("pins", text);
+}
+
+void EditWriter::apply(const SetSitePicture& step) {
+  if (!step.picture) {
+    setSurveyEntry("site_picture", {});
+    setSurveyEntry("site_picture_attachment", {});
+    return;
+  }
+  const NewSitePicture& picture = *step.picture;
+  if (auto placed = SitePicturePlacement::make(picture.points); !placed) throw StoreFailure(placed.error());
+  std::int64_t attachment = picture.attachment;
+  if (!picture.bytes.empty()) {
+    database_.run("INSERT INTO attachment(data) VALUES (?)", Bytes(picture.bytes));
+    attachment = database_.lastInsertId();
+  } else if (!database_.integer("SELECT id FROM attachment WHERE id = ?", attachment)) {
+    refuse("the picture of the site is no longer in the project", "picture of the site", kLookAgain);
+  }
+  setSurveyEntry("site_picture",
+                 sitePictureText({attachment, picture.name, picture.media_type, picture.points}));
+  setSurveyEntry("site_picture_attachment", std::to_string(attachment));
 }
 
 void EditWriter::addJob(const JobRecord& job) {

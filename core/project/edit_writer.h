@@ -30,6 +30,9 @@ class EditWriter {
   void apply(const SetPoses& step);
   void apply(const ClearPoses& step);
   void apply(const SetSurvey& step);
+  void apply(const SetPins& step);
+  void apply(const SetSitePicture& step);
+  void setSurveyEntry(const char* key, const std::string& value);  // empty: takes it out
   void addJob(const JobRecord& job);
   void addPhotograph(ScanId scan, const NewPhotograph& photograph);
   void setPose(ScanId scan, Stage stage, const Pose& pose);

@@ -71,6 +71,19 @@ Result<std::vector<unsigned char>> ImageStore::photograph(std::int64_t photograp
   });
 }
 
+Result<std::vector<unsigned char>> ImageStore::attachment(std::int64_t attachment) {
+  const std::lock_guard lock(mutex_);
+  return attempt([&] {
+    connection_.requireUnchanged();
+    Statement query = connection_.database().prepare("SELECT data FROM attachment WHERE id = ?");
+    if (!query.bind(attachment).step())
+      throw StoreFailure("the picture is no longer in the project", connection_.database().path().string(),
+                         "open the project again");
+    const Bytes data = query.blob(0);
+    return std::vector<unsigned char>(data.begin(), data.end());
+  });
+}
+
 void ImageStore::keep(const MatrixKey& key, const RangeImagePtr& image) {
   for (auto entry = kept_.begin(); entry != kept_.end(); ++entry) {
     if (entry->key == key) {

@@ -37,6 +37,7 @@ class ImageStore {
   // Past the cache: what is in the file now.
   Result<RangeImagePtr> readImage(std::int64_t matrix, int lines, const ScannerGeometry& geometry);
   Result<std::vector<unsigned char>> photograph(std::int64_t photograph);
+  Result<std::vector<unsigned char>> attachment(std::int64_t attachment);
   const ReadingConnection& connection() const { return connection_; }
   std::mutex& mutex() { return mutex_; }
 

@@ -4,6 +4,7 @@
 #include "core/project/operations/export_operation.h"
 #include "core/project/operations/import_operation.h"
 #include "core/project/operations/merge_operation.h"
+#include "core/project/operations/link_operation.h"
 #include "core/project/operations/register_operation.h"
 #include "core/project/operations/relax_operation.h"
 #include "core/project/operations/simulate_operation.h"
@@ -18,6 +19,7 @@ OperationRegistry& registered() {
     all.add(makeSimulateOperation());
     all.add(makeImportOperation());
     all.add(makeRegisterOperation());
+    all.add(makeLinkOperation());
     all.add(makeRelaxOperation());
     all.add(makeExportOperation());
     all.add(makeRenameOperation());

@@ -63,6 +63,17 @@ ProjectEdit surveyEdit(SurveyInfo survey) {
   return oneStep("survey data", SetSurvey{std::move(survey)});
 }
 
+ProjectEdit pinsEdit(const ProjectSnapshot& snapshot, std::vector<ScanId> scans) {
+  std::string title = "pin no scan";
+  if (scans.size() == 1) {
+    const ScanEntry* only = snapshot.find(scans.front());
+    title = "pin " + (only ? only->name : std::string("a scan"));
+  } else if (!scans.empty()) {
+    title = "pin " + counted(scans.size(), "scan");
+  }
+  return oneStep(std::move(title), SetPins{std::move(scans)});
+}
+
 ProjectEdit linkStateEdit(LinkId link, LinkState state) {
   return oneStep(state == LinkState::Active ? "enable a link" : "disable a link", SetLinkState{link, state});
 }

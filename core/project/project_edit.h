@@ -91,10 +91,16 @@ struct ClearPoses {  // not odometry: every scan has one
 struct SetSurvey {
   SurveyInfo survey;
 };
+struct SetPins {  // these and no others; scan 0 need not be named
+  std::vector<ScanId> scans;
+};
+struct SetSitePicture {
+  std::optional<NewSitePicture> picture;  // nothing: there is none any more
+};
 
 using EditStep = std::variant<AddScan, DeleteScans, RenameScan, SetNote, SetColour, ReorderScans, SetGeometry,
                               AddPhotograph, RemovePhotograph, AddLinks, DeleteLinks, SetLinkState, SetPoses,
-                              ClearPoses, SetSurvey>;
+                              ClearPoses, SetSurvey, SetPins, SetSitePicture>;
 
 // One entry of the history: undone and redone as a whole.
 struct ProjectEdit {
@@ -119,6 +125,8 @@ ProjectEdit noteEdit(ScanId scan, std::string note);
 ProjectEdit colourEdit(const ProjectSnapshot& snapshot, const std::vector<ScanId>& scans,
                        std::optional<std::uint32_t> colour);
 ProjectEdit surveyEdit(SurveyInfo survey);
+// These scans, and no others, are pinned: a relaxation leaves them where they are.
+ProjectEdit pinsEdit(const ProjectSnapshot& snapshot, std::vector<ScanId> scans);
 ProjectEdit linkStateEdit(LinkId link, LinkState state);
 // A person vouches for what was found: the link becomes one set by hand, which registering again leaves
 // alone. It is active afterwards. Throws std::invalid_argument for a link that did not succeed.
@@ -153,7 +161,7 @@ struct Change {
   std::vector<LinkId> links_changed;
   std::vector<Stage> stages_changed;  // with a pose added, removed or moved
   bool order_changed = false;
-  bool survey_changed = false;
+  bool survey_changed = false;  // its entries, the pins or the picture of the site
   bool jobs_changed = false;
 };
 Change changeBetween(const ProjectSnapshot& before, const ProjectSnapshot& after);

@@ -115,7 +115,8 @@ int dropUnreferenced(const Database& database) {
       "UPDATE edit SET state = 'fixed', changeset = NULL WHERE state = 'done';"
       "DELETE FROM scan_line WHERE matrix_id NOT IN (SELECT matrix_id FROM scan);"
       "DELETE FROM attachment WHERE id NOT IN (SELECT attachment_id FROM photograph WHERE attachment_id IS "
-      "NOT NULL);"
+      "NOT NULL) AND id NOT IN (SELECT CAST(value AS INTEGER) FROM survey WHERE key = "
+      "'site_picture_attachment');"
       "DELETE FROM scanner_geometry WHERE id NOT IN (SELECT geometry_id FROM scan);");
   database.execute("DELETE FROM matrix WHERE id NOT IN (SELECT matrix_id FROM scan)");
   return static_cast<int>(database.integer("SELECT changes()").value_or(0));

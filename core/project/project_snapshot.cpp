@@ -105,6 +105,23 @@ std::vector<Pose> ProjectSnapshot::filledPoses(Stage stage) const {
   return result;
 }
 
+bool ProjectSnapshot::isPinned(ScanId id) const {
+  return std::ranges::find(pins_, id) != pins_.end();
+}
+
+Result<std::vector<unsigned char>> ProjectSnapshot::sitePictureBytes() const {
+  if (!site_picture_ || !store_)
+    return fail("the project has no picture of the site", path_.string(), "add one first");
+  return store_->attachment(site_picture_->attachment);
+}
+
+SnapshotPtr ProjectSnapshot::withPoses(Stage stage, const std::vector<std::pair<ScanId, Pose>>& poses) const {
+  auto changed = std::make_shared<ProjectSnapshot>(*this);
+  for (const auto& [scan, pose] : poses)
+    if (const auto index = indexOf(scan)) changed->scans_[*index].poses[stage] = pose;
+  return changed;
+}
+
 bool ProjectSnapshot::canUndo() const {
   return std::ranges::any_of(history_, [](const HistoryEntry& e) { return !e.undone && !e.fixed; });
 }

@@ -8,10 +8,12 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "core/project/job_record.h"
 #include "core/project/link.h"
+#include "core/project/site_picture.h"
 #include "core/project/stage.h"
 #include "core/scan/range_image.h"
 
@@ -121,10 +123,21 @@ class ProjectSnapshot {
   std::vector<Pose> filledPoses(Stage stage) const;
 
   const SurveyInfo& survey() const { return survey_; }
+  // Scans that a relaxation leaves where they are, beside scan 0; in the survey's order.
+  const std::vector<ScanId>& pins() const { return pins_; }
+  bool isPinned(ScanId id) const;
+  const std::optional<SitePicture>& sitePicture() const { return site_picture_; }
+  // Any thread. Error: there is none, or it can no longer be read.
+  Result<std::vector<unsigned char>> sitePictureBytes() const;
   const std::vector<JobRecord>& jobs() const { return jobs_; }
   const std::vector<HistoryEntry>& history() const { return history_; }
   bool canUndo() const;
   bool canRedo() const;
+
+  // The project as it would be with these poses at the stage, for showing what is only proposed; in no file.
+  // Scans that are not there are left out.
+  std::shared_ptr<const ProjectSnapshot> withPoses(Stage stage,
+                                                   const std::vector<std::pair<ScanId, Pose>>& poses) const;
 
  private:
   friend class SnapshotReader;
@@ -136,6 +149,9 @@ class ProjectSnapshot {
   std::unordered_map<ScanId, std::size_t> index_;
   std::vector<Link> links_;
   SurveyInfo survey_;
+  std::vector<ScanId> pins_;
+  std::optional<SitePicture> site_picture_;
+  std::shared_ptr<ImageStore> store_;
   std::vector<JobRecord> jobs_;
   std::vector<HistoryEntry> history_;
 };

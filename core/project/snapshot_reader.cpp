@@ -1,5 +1,6 @@
 #include "core/project/snapshot_reader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -119,6 +120,32 @@ SurveyInfo readSurvey(const Database& database) {
   return survey;
 }
 
+// Of scans that are there: one that was deleted is pinned again when it comes back.
+std::vector<ScanId> readPins(const Database& database, const ProjectSnapshot& snapshot) {
+  Statement query = database.prepare("SELECT value FROM survey WHERE key = 'pins'");
+  if (!query.step()) return {};
+  std::vector<std::pair<std::size_t, ScanId>> pins;
+  const std::string text = query.text(0);
+  for (const std::string_view word : splitWords(text))
+    if (const auto scan = parseInteger(word))
+      if (const auto index = snapshot.indexOf(*scan)) pins.emplace_back(*index, *scan);
+  std::ranges::sort(pins);
+  std::vector<ScanId> scans;
+  for (const auto& pin : pins) scans.push_back(pin.second);
+  return scans;
+}
+
+std::optional<SitePicture> readSitePicture(const Database& database) {
+  const auto attachment =
+      database.integer("SELECT CAST(value AS INTEGER) FROM survey WHERE key = 'site_picture_attachment'");
+  Statement query = database.prepare("SELECT value FROM survey WHERE key = 'site_picture'");
+  if (!attachment || !query.step()) return std::nullopt;
+  auto picture = parseSitePicture(query.text(0));
+  if (!picture) throw damaged(database, "the place of the site's picture is no such text");
+  picture->attachment = *attachment;
+  return picture;
+}
+
 std::vector<JobRecord> readJobs(const Database& database) {
   std::vector<JobRecord> jobs;
   Statement query = database.prepare(
@@ -236,6 +263,9 @@ SnapshotPtr SnapshotReader::read(const Database& database, std::shared_ptr<Image
                                 photographs.text(4), static_cast<std::size_t>(photographs.integer(5))});
   snapshot->links_ = readLinks(database);
   snapshot->survey_ = readSurvey(database);
+  snapshot->pins_ = readPins(database, *snapshot);
+  snapshot->site_picture_ = readSitePicture(database);
+  snapshot->store_ = store;
   snapshot->jobs_ = readJobs(database);
   snapshot->history_ = readHistory(database);
   return snapshot;

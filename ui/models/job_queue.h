@@ -24,6 +24,7 @@ struct JobRequest {
   // Wait for accept() or discard() instead of storing the result at once. The jobs behind it wait too: they
   // would be computed from poses that may be about to change.
   bool ask = false;
+  std::shared_ptr<const void> keep;  // lives as long as the work: what owns `operation`, for one made for it
 };
 
 enum class JobPhase { Queued, Running, Waiting, Failed, Cancelled, Accepted, Discarded };

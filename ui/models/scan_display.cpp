@@ -12,6 +12,10 @@ ScanDisplay::ScanDisplay(const ProjectSession& session, QObject* parent)
   connect(&session, &ProjectSession::closed, this, [this] {
     hidden_.clear();
     chosen_.reset();
+    proposed_.clear();
+    roles_.clear();
+    ghosts_.clear();
+    left_out_.clear();
   });
 }
 
@@ -56,6 +60,41 @@ void ScanDisplay::setStage(std::optional<Stage> stage) {
   if (stage == chosen_) return;
   chosen_ = stage;
   Q_EMIT stageChanged();
+}
+
+void ScanDisplay::propose(std::vector<std::pair<ScanId, Pose>> poses) {
+  if (poses.empty()) return withdraw();
+  proposed_ = std::move(poses);
+  Q_EMIT placedChanged();
+}
+
+void ScanDisplay::withdraw() {
+  if (proposed_.empty()) return;
+  proposed_.clear();
+  Q_EMIT placedChanged();
+}
+
+SnapshotPtr ScanDisplay::placed() const {
+  const SnapshotPtr snapshot = session_.snapshot();
+  return snapshot && isProposal() ? snapshot->withPoses(Stage::Relaxed, proposed_) : snapshot;
+}
+
+void ScanDisplay::showWhatIf(std::map<ScanId, Pose> ghosts, std::vector<LinkId> left_out) {
+  if (ghosts.empty() && ghosts_.empty()) return;
+  ghosts_ = std::move(ghosts);
+  left_out_ = std::move(left_out);
+  Q_EMIT whatIfChanged();
+}
+
+RelaxationRole ScanDisplay::role(ScanId scan) const {
+  const auto found = roles_.find(scan);
+  return found == roles_.end() ? RelaxationRole::None : found->second;
+}
+
+void ScanDisplay::setRoles(std::map<ScanId, RelaxationRole> roles) {
+  if (roles == roles_) return;
+  roles_ = std::move(roles);
+  Q_EMIT rolesChanged();
 }
 
 }  // namespace tiltmap::ui

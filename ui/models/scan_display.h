@@ -3,14 +3,20 @@
 
 #include <QColor>
 #include <QObject>
+#include <map>
 #include <optional>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "core/project/project_snapshot.h"
 
 namespace tiltmap::ui {
 
 class ProjectSession;
+
+// What a scan is to a relaxation that runs.
+enum class RelaxationRole { None, Held, Active, Waiting, Queued, Aligning };
 
 class ScanDisplay : public QObject {
   Q_OBJECT
@@ -31,14 +37,39 @@ class ScanDisplay : public QObject {
   std::optional<Stage> chosenStage() const { return chosen_; }
   void setStage(std::optional<Stage> stage);  // nothing: follow the latest
 
+  // Poses that are only proposed are shown in place of the stage `relaxed`, and of whatever stage was chosen,
+  // until they are withdrawn. The project does not know of them.
+  void propose(std::vector<std::pair<ScanId, Pose>> poses);
+  void withdraw();
+  bool isProposal() const { return !proposed_.empty(); }
+  // What views draw: the project, with the proposed poses where there are any.
+  SnapshotPtr placed() const;
+  Stage placedStage() const { return isProposal() ? Stage::Relaxed : stage(); }
+
+  // Where scans would be without some links that somebody asks about: shown beside where they are.
+  void showWhatIf(std::map<ScanId, Pose> ghosts, std::vector<LinkId> left_out);
+  const std::map<ScanId, Pose>& ghosts() const { return ghosts_; }
+  const std::vector<LinkId>& leftOut() const { return left_out_; }
+
+  RelaxationRole role(ScanId scan) const;
+  void setRoles(std::map<ScanId, RelaxationRole> roles);
+  bool hasRoles() const { return !roles_.empty(); }
+
  Q_SIGNALS:
   void visibilityChanged();
   void stageChanged();
+  void placedChanged();  // poses were proposed or withdrawn
+  void rolesChanged();
+  void whatIfChanged();
 
  private:
   const ProjectSession& session_;
   std::set<ScanId> hidden_;
   std::optional<Stage> chosen_;
+  std::vector<std::pair<ScanId, Pose>> proposed_;
+  std::map<ScanId, RelaxationRole> roles_;
+  std::map<ScanId, Pose> ghosts_;
+  std::vector<LinkId> left_out_;
 };
 
 }  // namespace tiltmap::ui

@@ -3,12 +3,18 @@
 #include <algorithm>
 
 #include "ui/models/log.h"
+#include "ui/models/relaxation_model.h"
 #include "ui/models/strings.h"
 
 namespace tiltmap::ui {
 
 Workspace::Workspace(Preferences& preferences, QObject* parent)
-    : QObject(parent), preferences_(preferences), jobs_(session_), display_(session_), residuals_(session_) {
+    : QObject(parent),
+      preferences_(preferences),
+      jobs_(session_),
+      display_(session_),
+      relaxation_(std::make_unique<RelaxationModel>(session_, jobs_, display_)),
+      residuals_(session_) {
   connect(&session_, &ProjectSession::failed, &messages_, &Messages::error);
   connect(&jobs_, &JobQueue::failed, &messages_, &Messages::error);
   connect(&jobs_, &JobQueue::finished, this, &Workspace::tellFinished);
@@ -24,6 +30,8 @@ Workspace::Workspace(Preferences& preferences, QObject* parent)
           [](const Change& change) { logLine(LogLevel::Info, "project: " + qt(change.title)); });
 }
 
+Workspace::~Workspace() = default;
+
 JobRequest Workspace::withThreads(JobRequest request) const {
   const auto& infos = request.operation->parameters();
   const bool takes = std::ranges::any_of(infos, [](const auto& info) { return info.name == "threads"; });
@@ -37,9 +45,13 @@ std::optional<int> Workspace::start(JobRequest request) {
 }
 
 std::optional<int> Workspace::startAll(std::vector<JobRequest> requests) {
-  for (JobRequest& request : requests) request = withThreads(std::move(request));
+  for (JobRequest& request : requests) request = relaxation_->watched(withThreads(std::move(request)));
   const auto id = jobs_.startAll(requests);
-  if (id) return *id;
+  if (id) {
+    for (std::size_t k = 0; k < requests.size(); ++k)
+      relaxation_->started(*id + static_cast<int>(k), requests[k]);
+    return *id;
+  }
   messages_.error(id.error());
   return {};
 }

@@ -13,12 +13,15 @@
 
 namespace tiltmap::ui {
 
+class RelaxationModel;
+
 // Wires them: errors become messages, finished jobs are told, the selection forgets what is gone. No widgets.
 class Workspace : public QObject {
   Q_OBJECT
 
  public:
   explicit Workspace(Preferences& preferences, QObject* parent = nullptr);
+  ~Workspace() override;
 
   Preferences& preferences() { return preferences_; }
   const Preferences& preferences() const { return preferences_; }
@@ -33,6 +36,8 @@ class Workspace : public QObject {
   const ScanDisplay& display() const { return display_; }
   Messages& messages() { return messages_; }
   Residuals& residuals() { return residuals_; }
+  // Every relaxation of this window, whoever started it.
+  RelaxationModel& relaxation() { return *relaxation_; }
 
   // Starts an operation with the number of threads that the user prefers, unless `values` says otherwise. A
   // refusal is shown as a message; the job's id else.
@@ -48,6 +53,7 @@ class Workspace : public QObject {
   JobQueue jobs_;
   Selection selection_;
   ScanDisplay display_;
+  std::unique_ptr<RelaxationModel> relaxation_;
   Messages messages_;
   Residuals residuals_;
 };

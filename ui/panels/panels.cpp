@@ -3,10 +3,13 @@
 #include "ui/panels/depth_image_panel.h"
 #include "ui/panels/details_panel.h"
 #include "ui/panels/history_panel.h"
+#include "ui/panels/links_panel.h"
 #include "ui/panels/localisation_panel.h"
 #include "ui/panels/log_panel.h"
 #include "ui/panels/panel.h"
 #include "ui/panels/project_tree_panel.h"
+#include "ui/panels/relaxation_panel.h"
+#include "ui/panels/site_map_panel.h"
 #include "ui/panels/view3d_panel.h"
 
 namespace tiltmap::ui {
@@ -30,6 +33,10 @@ const std::vector<PanelInfo>& panels() {
       {"details", "Details", "documentinfo", "What is known about the selected scan or link",
        make<DetailsPanel>},
       {"localisation", "Localisation", "table", "Where the stops are, by stage", make<LocalisationPanel>},
+      {"relax", "Relaxation", "relax", "Run a relaxation, watch it, and accept or discard what it finds",
+       make<RelaxationPanel>},
+      {"sitemap", "Site map", "map-flat", "Stops and links in plan, coloured by quality", make<SiteMapPanel>},
+      {"links", "Links", "link", "Every link with its figures, the worst first", make<LinksPanel>},
       {"history", "History", "view-history", "Every edit of the project, and a way back to it",
        make<HistoryPanel>},
       {"log", "Log", "text-x-log", "What the program did, line by line", make<LogPanel>},

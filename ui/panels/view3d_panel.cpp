@@ -67,6 +67,7 @@ View3dPanel::View3dPanel(const PanelContext& context, QWidget* parent)
   connect(&workspace.session(), &ProjectSession::snapshotReplaced, this, &View3dPanel::refreshScans);
   connect(&workspace.session(), &ProjectSession::opened, this, [this] { scene_->setView(SceneView::Iso); });
   connect(&workspace.display(), &ScanDisplay::stageChanged, this, &View3dPanel::refreshScans);
+  connect(&workspace.display(), &ScanDisplay::placedChanged, this, &View3dPanel::refreshScans);
   connect(&workspace.display(), &ScanDisplay::visibilityChanged, this, [this] {
     scene_->setVisible([this](ScanId scan) { return context_.workspace.display().isVisible(scan); });
     view_->drawSoon();
@@ -329,9 +330,10 @@ void View3dPanel::refreshStages() {
 void View3dPanel::refreshScans() {
   const SnapshotPtr snapshot = context_.workspace.snapshot();
   refreshStages();
-  const Stage stage = snapshot ? context_.workspace.display().stage() : Stage::Odometry;
-  tellTroubles(scene_->show(snapshot, stage));
-  compare_bar_->setStages(snapshot, stage);
+  const ScanDisplay& display = context_.workspace.display();
+  const Stage stage = snapshot ? display.placedStage() : Stage::Odometry;
+  tellTroubles(scene_->show(display.placed(), stage));
+  compare_bar_->setStages(display.placed(), stage);
   refreshResiduals();
   const bool some = snapshot && !snapshot->scans().empty();
   pages_->setCurrentWidget(some ? static_cast<QWidget*>(view_) : empty_);

@@ -229,10 +229,16 @@ void MainWindow::closeEvent(QCloseEvent* event) {
   const bool asked = message_bar_->isVisible() && message_bar_->message().action == "file.quit-cancelling";
   if (workspace_->jobs().busy() && !asked) {
     const JobStatus* job = workspace_->jobs().current();
+    const bool waits = job && job->phase == JobPhase::Waiting;
+    const int queued = workspace_->jobs().queued();
+    QString text = (job ? job->title : QString("Work")) +
+                   (waits ? " waits to be accepted or discarded." : " is not finished.");
+    if (queued > 0) text += QString(" %1 more %2 in the queue.").arg(queued).arg(queued == 1 ? "is" : "are");
     workspace_->messages().show({MessageKind::Warning,
-                                 (job ? job->title : QString("Work")) + " is not finished.",
-                                 "Closing now cancels it, and the project stays as it was before. Everything "
-                                 "that was accepted is stored.",
+                                 text,
+                                 QString("Closing now %1 it, and the project stays as it was before. Everything "
+                                         "that was accepted is stored.")
+                                     .arg(waits ? "discards" : "cancels"),
                                  {},
                                  "file.quit-cancelling"});
     event->ignore();

@@ -65,7 +65,8 @@ void MainWindow::makeMenus() {
   fill(registering, actions_, otherOperations());
   fill(registering, actions_,
        {"", "link.show", "link.register", "link.accept", "link.disable", "link.enable"});
-  fill(menuBar()->addMenu("Re&lax"), actions_, {"op.relax", "", "job.cancel"});
+  fill(menuBar()->addMenu("Re&lax"), actions_,
+       {"op.relax", "", "panel.relax", "panel.sitemap", "panel.links", "", "job.cancel"});
   fill(menuBar()->addMenu("E&xport"), actions_,
        {"op.export", "op.report", "op.picture", "panel.localisation"});
   fill(menuBar()->addMenu("&Help"), actions_,

@@ -58,7 +58,10 @@ std::vector<DockPlace> delivered(Perspective perspective) {
     case Perspective::Relax:
       return {{"view3d", Left, "", 0},
               {"project-tree", Left, "view3d", 0.24},
-              {"localisation", Bottom, "view3d", 0.38},
+              {"relax", Right, "view3d", 0.42},
+              {"sitemap", Bottom, "view3d", 0.52},
+              {"links", Bottom, "relax", 0.45},
+              {"localisation", Tab, "sitemap", 0},
               {"history", Bottom, "project-tree", 0.40},
               {"log", Tab, "history", 0}};
   }

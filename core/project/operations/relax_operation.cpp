@@ -10,6 +10,7 @@
 
 #include "core/base/parallel.h"
 #include "core/multiview/relaxation.h"
+#include "core/project/link_what_if.h"
 #include "core/project/operations/index_list.h"
 #include "core/project/operations/register_operation.h"
 
@@ -23,9 +24,6 @@ struct RelaxSettings {
   int threads = 0;
 };
 
-// What a link set by hand is worth where it does not say: two centimetres and half a degree.
-constexpr double kByHand_m = 0.02;
-constexpr double kByHand_rad = 0.5 * kDegree;
 // Registering the pairs first, where nobody has, and preparing the scans, as shares of the progress.
 constexpr double kRegistering = 0.4;
 constexpr double kPreparing = 0.3;
@@ -33,8 +31,11 @@ constexpr double kPreparing = 0.3;
 const ParameterTable<RelaxSettings>& relaxTable() {
   static const ParameterTable<RelaxSettings> table = [] {
     ParameterTable<RelaxSettings> t("relax");
-    t.text("pin", &RelaxSettings::pin,
-           "Scans that never move, such as 0,5 or 0-3; scan 0 never does, named or not", "ours; thesis 6.2");
+    t.text(
+        "pin", &RelaxSettings::pin,
+        "Scans that never move, such as 0,5 or 0-3, beside those pinned in the project; scan 0 never does, "
+        "named or not",
+        "ours; thesis 6.2");
     t.integer("threads", &RelaxSettings::threads, "", 0, 256,
               "Threads to use, 0 for all cores; the result does not depend on it", "ours");
     t.include(relaxationParameters(), &RelaxSettings::relaxation);
@@ -43,17 +44,34 @@ const ParameterTable<RelaxSettings>& relaxTable() {
   return table;
 }
 
+// Those of the project and those of the parameter, ascending.
 Result<std::vector<int>> pinsOf(const ProjectSnapshot& snapshot, const RelaxSettings& settings) {
-  if (settings.pin.empty()) return std::vector<int>();
-  return parseIndexList(settings.pin, static_cast<int>(snapshot.scans().size()), "--pin");
+  std::vector<int> pins;
+  if (!settings.pin.empty()) {
+    auto named = parseIndexList(settings.pin, static_cast<int>(snapshot.scans().size()), "--pin");
+    if (!named) return named;
+    pins = std::move(*named);
+  }
+  for (const ScanId scan : snapshot.pins())
+    if (const auto index = snapshot.indexOf(scan)) pins.push_back(static_cast<int>(*index));
+  std::ranges::sort(pins);
+  const auto repeats = std::ranges::unique(pins);
+  pins.erase(repeats.begin(), repeats.end());
+  return pins;
+}
+
+std::string methodName(const RelaxSettings& settings) {
+  return std::get<std::string>(relaxationParameters().values(settings.relaxation).at("method"));
 }
 
 Result<std::vector<PreparedScanPtr>> prepareScans(const ProjectSnapshot& snapshot,
-                                                  const RelaxSettings& settings, const JobControl& control) {
+                                                  const RelaxSettings& settings, const JobControl& control,
+                                                  RelaxationFeed* feed) {
   const std::size_t count = snapshot.scans().size();
   std::vector<Result<PreparedScanPtr>> slots(count, PreparedScanPtr());
   std::atomic<std::size_t> done = 0;
   parallelFor(count, settings.threads, [&](std::size_t i) {
+    if (feed) feed->waitWhilePaused(control.stop);
     if (control.stopRequested()) return;
     slots[i] = snapshot.scans()[i].scan().map(
         [&](const Scan& scan) { return prepare(scan, settings.relaxation.registration); });
@@ -135,11 +153,8 @@ void addLinks(const ProjectSnapshot& snapshot, const std::vector<Link>& links, R
       continue;
     const bool by_hand = link.origin == LinkOrigin::ByHand;
     if (!by_hand && !link.information) continue;
-    Vector6d information;
-    information << Eigen::Vector3d::Constant(1.0 / (kByHand_rad * kByHand_rad)),
-        Eigen::Vector3d::Constant(1.0 / (kByHand_m * kByHand_m));
     input.constraints.push_back(
-        {a, b, link.fixed_from_moving, link.information.value_or(information.asDiagonal()), !by_hand});
+        {a, b, link.fixed_from_moving, link.information.value_or(informationByHand()), !by_hand});
   }
 }
 
@@ -257,9 +272,40 @@ JobControl part(const JobControl& control, double from, double to) {
   return inner;
 }
 
+RelaxationBeginning beginningOf(const ProjectSnapshot& snapshot, const RelaxationInput& input,
+                                const RelaxSettings& settings) {
+  RelaxationBeginning beginning;
+  beginning.method = methodName(settings);
+  for (const ScanEntry& scan : snapshot.scans()) beginning.scans.push_back(scan.id);
+  beginning.world_from_scan = input.world_from_scan;
+  beginning.pins = input.pins;
+  if (beginning.pins.empty() || beginning.pins.front() != 0) beginning.pins.insert(beginning.pins.begin(), 0);
+  return beginning;
+}
+
+RelaxationWatch watchFor(RelaxationFeed* feed, const std::stop_token& stop) {
+  if (!feed) return {};
+  return {[feed, stop](const RelaxationState& state) { feed->at(state, stop); },
+          [feed, stop](const Relaxation& relaxation, const RelaxationStep& step) {
+            feed->stepped({step, relaxation.state(), relaxation.poses(), relaxation.links()}, stop);
+          }};
+}
+
+// The same control, whose progress waits while the feed is paused: for parts that know nothing of feeds.
+JobControl held(const JobControl& control, RelaxationFeed* feed) {
+  if (!feed) return control;
+  JobControl inner = control;
+  inner.report = [&control, feed](const Progress& progress) {
+    control.tell(progress.fraction, progress.message);
+    feed->waitWhilePaused(control.stop);
+  };
+  return inner;
+}
+
 class RelaxOperation : public SettingsOperation<RelaxSettings> {
  public:
-  RelaxOperation() : SettingsOperation(relaxTable()) {}
+  explicit RelaxOperation(std::shared_ptr<RelaxationFeed> feed)
+      : SettingsOperation(relaxTable()), feed_(std::move(feed)) {}
   std::string title() const override { return "Relax all scans"; }
   std::string help() const override {
     return "Takes all overlapping pairs of scans together, not only neighbours in time, and spreads what the "
@@ -284,10 +330,11 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
     if (!pins) return fail(pins.error());
     const bool registers = !snapshot->hasStage(Stage::Pairwise);
     const double from = registers ? kRegistering : 0.0;
-    auto start = startOf(snapshot, settings, part(control, 0.0, from));
+    const JobControl registering = part(control, 0.0, from);
+    auto start = startOf(snapshot, settings, held(registering, feed_.get()));
     if (!start) return fail(start.error());
     const double prepared_at = from + kPreparing * (1.0 - from);
-    auto prepared = prepareScans(*snapshot, settings, part(control, from, prepared_at));
+    auto prepared = prepareScans(*snapshot, settings, part(control, from, prepared_at), feed_.get());
     if (!prepared) return fail(prepared.error());
 
     OperationResult outcome;
@@ -297,9 +344,10 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
     input.world_from_scan = start->world_from_scan;
     input.pins = *pins;
     addLinks(*snapshot, start->links, input);
+    if (feed_) feed_->began(beginningOf(*snapshot, input, settings));
 
-    auto result =
-        relax(std::move(input), settings.relaxation, settings.threads, part(control, prepared_at, 1.0));
+    auto result = relax(std::move(input), settings.relaxation, settings.threads,
+                        part(control, prepared_at, 1.0), watchFor(feed_.get(), control.stop));
     if (!result) return fail(result.error());
     outcome.warnings.insert(outcome.warnings.end(), result->warnings.begin(), result->warnings.end());
 
@@ -307,19 +355,23 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
     report["milliseconds"] =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
     report["registered_first"] = start->registered_first;
-    report["method"] = std::get<std::string>(relaxationParameters().values(settings.relaxation).at("method"));
+    report["method"] = methodName(settings);
+    report["pins"] = *pins;
     report["warnings"] = outcome.warnings;
     outcome.report_json = report.dump();
 
     outcome.edit = editOf(snapshot, std::move(*start), *result);
     return outcome;
   }
+
+ private:
+  std::shared_ptr<RelaxationFeed> feed_;  // null: nobody watches
 };
 
 }  // namespace
 
-std::unique_ptr<Operation> makeRelaxOperation() {
-  return std::make_unique<RelaxOperation>();
+std::unique_ptr<Operation> makeRelaxOperation(std::shared_ptr<RelaxationFeed> feed) {
+  return std::make_unique<RelaxOperation>(std::move(feed));
 }
 
 }  // namespace tiltmap

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/project/operation.h"
+#include "core/project/operations/relaxation_feed.h"
 
 namespace tiltmap {
 
@@ -16,7 +17,11 @@ inline constexpr const char* kFoundByRelaxation = "relaxed";
 // relaxation are replaced. Links set by hand pull as they stand; links found by registration do where the
 // surfaces give none now; pairs whose link is disabled are left out. Its report has `milliseconds`, `moved`
 // (scan, translation_m, rotation_deg), `unlinked`, `warnings`, and the record: `events`, `links`, `steps`,
-// `rms_m`, `method`, `registered_first`.
-std::unique_ptr<Operation> makeRelaxOperation();
+// `rms_m`, `method`, `registered_first`, `pins`. Scans pinned in the project never move, nor do those that
+// the parameter `pin` names.
+//
+// A run tells the feed, where there is one, and waits while that is paused; an operation with a feed is for
+// one run. What it computes is the same bits.
+std::unique_ptr<Operation> makeRelaxOperation(std::shared_ptr<RelaxationFeed> feed = nullptr);
 
 }  // namespace tiltmap
