@@ -186,9 +186,8 @@ void linearise(Metric metric, const SurfaceElements& fixed, const SurfaceElement
         const Residual plane = patchToPatch(e, fixed.shape[pair.fixed], moving.shape[pair.moving],
                                             rf.transpose() * d, rm.transpose() * d);
         const double variance = plane.variance + squared_scale;
-        const double loss_square =
-            loss.isOwn() ? loss.deviations * loss.deviations * variance : squared_scale;
-        const double w = sums.count(pair, plane.r * plane.r, 9.0 * variance, loss_square, variance);
+        const double w =
+            sums.count(pair, plane.r * plane.r, 9.0 * variance, squaredLossScale(loss, variance), variance);
         if (residuals) residuals->variance_m2.push_back(plane.variance);
         sums.addPlane(plane, e.p, w / variance);
       });

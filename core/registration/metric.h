@@ -22,6 +22,12 @@ inline double gemanMcClureWeight(double squared_residual, double squared_scale) 
   return w * w;
 }
 
+// The squared scale of the loss for one residual; `variance_m2` with the loss's excess or scale added
+// (patches), any number for the others.
+inline double squaredLossScale(const LossScale& loss, double variance_m2) {
+  return loss.isOwn() ? loss.deviations * loss.deviations * variance_m2 : loss.scale_m * loss.scale_m;
+}
+
 // Which residual a combination of motion and elements has.
 enum class Metric {
   PointToPoint,  // distance of the two points (closed forms)

@@ -39,6 +39,12 @@ struct OneWithLeaf : One {
   }
 };
 
+struct OneWithVisits : One {
+  std::vector<KdTree::Leaf>& visited;
+  explicit OneWithVisits(std::vector<KdTree::Leaf>& leaves) : visited(leaves) {}
+  void enter(const KdTree::Leaf& leaf) { visited.push_back(leaf); }
+};
+
 struct Several {
   std::size_t count;
   std::vector<KdTree::Neighbour>& sorted;
@@ -136,6 +142,7 @@ std::uint32_t KdTree::build(std::span<Entry> entries, std::uint32_t first, int a
 
 template <class Found>
 void KdTree::searchLeaf(const Leaf& leaf, const Eigen::Vector3d& query, Found& found) const {
+  if constexpr (requires { found.enter(leaf); }) found.enter(leaf);
   const Eigen::Vector3d* point = points_.data() + leaf.first;
   const std::uint32_t* index = order_.data() + leaf.first;
   for (std::uint32_t i = 0; i < leaf.count; ++i) {
@@ -180,6 +187,14 @@ void KdTree::search(const Eigen::Vector3d& query, Found& found) const {
 KdTree::Neighbour KdTree::nearest(const Eigen::Vector3d& query) const {
   if (empty()) throw std::invalid_argument("KdTree::nearest: the tree is empty");
   One found;
+  search(query, found);
+  return found.best;
+}
+
+KdTree::Neighbour KdTree::nearest(const Eigen::Vector3d& query, std::vector<Leaf>& visited) const {
+  if (empty()) throw std::invalid_argument("KdTree::nearest: the tree is empty");
+  visited.clear();
+  OneWithVisits found(visited);
   search(query, found);
   return found.best;
 }

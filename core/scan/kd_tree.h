@@ -46,6 +46,8 @@ class KdTree {
   bool empty() const { return order_.empty(); }
   // The nearest point; the tree must not be empty. Ties go to the lowest index.
   Neighbour nearest(const Eigen::Vector3d& query) const;
+  // The same, and the leaves that were looked into on the way, in order: for showing the search.
+  Neighbour nearest(const Eigen::Vector3d& query, std::vector<Leaf>& visited) const;
   // Same, within a bound: false where no point is nearer than max_distance_m (infinity: no bound).
   bool nearestWithin(const Eigen::Vector3d& query, double max_distance_m, Neighbour& found) const;
   // The `count` nearest, nearest first, ties by index (fewer where the tree has fewer).

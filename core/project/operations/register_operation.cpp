@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/parallel.h"
+#include "core/project/operations/pair_links.h"
 #include "core/project/operations/pair_list.h"
 #include "core/registration/register_pair.h"
 
@@ -97,50 +98,6 @@ nlohmann::json pairJson(const IndexPair& pair, const PairResult& result, double 
            {{"translation_m", {t.x(), t.y(), t.z()}}, {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}}}};
 }
 
-Link linkOf(const ProjectSnapshot& snapshot, const IndexPair& pair, const PairResult& result,
-            double milliseconds) {
-  Link link;
-  link.fixed = snapshot.scans()[static_cast<std::size_t>(pair.first)].id;
-  link.moving = snapshot.scans()[static_cast<std::size_t>(pair.second)].id;
-  link.fixed_from_moving = result.fixed_from_moving;
-  link.iterations = result.iterations;
-  link.correspondences = static_cast<int>(result.correspondences);
-  link.rms_m = result.rms_m;
-  link.overlap = result.overlap;
-  link.milliseconds = milliseconds;
-  link.stop_reason = stopReasonName(result.stop_reason);
-  link.succeeded = result.succeeded();
-  if (result.succeeded()) link.information = result.information;
-  return link;
-}
-
-// The link that chains `index` to the scan before it: the one just found, else one the project already has.
-const Link* chainLink(const ProjectSnapshot& snapshot, const std::vector<Link>& found, std::size_t index) {
-  const ScanId fixed = snapshot.scans()[index - 1].id, moving = snapshot.scans()[index].id;
-  for (const Link& link : found)
-    if (link.fixed == fixed && link.moving == moving) return &link;
-  for (const Link& link : snapshot.links())
-    if (link.fixed == fixed && link.moving == moving && link.usable()) return &link;
-  return nullptr;
-}
-
-std::vector<std::pair<ScanId, Pose>> chainedPoses(const ProjectSnapshot& snapshot,
-                                                  const std::vector<Link>& found) {
-  std::vector<std::pair<ScanId, Pose>> poses;
-  for (std::size_t i = 0; i < snapshot.scans().size(); ++i) {
-    const ScanEntry& scan = snapshot.scans()[i];
-    if (i == 0) {
-      poses.emplace_back(scan.id, scan.odometry());
-      continue;
-    }
-    const Link* link = chainLink(snapshot, found, i);
-    const Pose by_odometry = snapshot.scans()[i - 1].odometry().inverse() * scan.odometry();
-    poses.emplace_back(
-        scan.id, poses.back().second * (link && link->usable() ? link->fixed_from_moving : by_odometry));
-  }
-  return poses;
-}
-
 class RegisterOperation : public SettingsOperation<RegisterSettings> {
  public:
   RegisterOperation() : SettingsOperation(registerTable()) {}
@@ -173,8 +130,8 @@ class RegisterOperation : public SettingsOperation<RegisterSettings> {
     std::vector<Result<PairResult>> results(pairs->size(), PairResult());
     parallelFor(pairs->size(), settings.threads, [&](std::size_t i) {
       const auto [fixed, moving] = (*pairs)[i];
-      const Pose start = snapshot->scans()[static_cast<std::size_t>(fixed)].odometry().inverse() *
-                         snapshot->scans()[static_cast<std::size_t>(moving)].odometry();
+      const Pose start = odometryStart(snapshot->scans()[static_cast<std::size_t>(fixed)],
+                                       snapshot->scans()[static_cast<std::size_t>(moving)]);
       results[i] =
           registerPair(*prepared->at(fixed), *prepared->at(moving), start, settings.registration, control);
       counter.finished("registered " + std::to_string(moving) + " to " + std::to_string(fixed));
@@ -190,7 +147,9 @@ class RegisterOperation : public SettingsOperation<RegisterSettings> {
       // Preparation is shared between pairs, but a pair's time counts from its two raw matrices.
       const double milliseconds =
           (*prepared->at(fixed))->milliseconds + (*prepared->at(moving))->milliseconds + result.milliseconds;
-      links.push_back(linkOf(*snapshot, (*pairs)[i], result, milliseconds));
+      const ScanId fixed_id = snapshot->scans()[static_cast<std::size_t>(fixed)].id;
+      const ScanId moving_id = snapshot->scans()[static_cast<std::size_t>(moving)].id;
+      links.push_back(pairLink(fixed_id, moving_id, result, milliseconds));
       report["pairs"].push_back(pairJson((*pairs)[i], result, milliseconds));
       if (!result.succeeded())
         outcome.warnings.push_back("scan " + std::to_string(moving) + " was not registered to scan " +
@@ -199,8 +158,7 @@ class RegisterOperation : public SettingsOperation<RegisterSettings> {
     }
     report["milliseconds"] = millisecondsSince(started);
     outcome.report_json = report.dump();
-    auto poses = chainedPoses(*snapshot, links);
-    outcome.edit = registerEdit(snapshot, std::move(links), std::move(poses));
+    outcome.edit = pairLinksEdit(snapshot, std::move(links));
     return outcome;
   }
 };
