@@ -164,6 +164,12 @@ void Scene::setResiduals(const ScanResiduals& now, const ScanResiduals& before) 
   if (parts_->settings.colouring == SceneColouring::Residual) parts_->colourAll();
 }
 
+void Scene::setExtent(std::vector<Vector3d> corners) {
+  parts_->extra_extent = std::move(corners);
+  parts_->placeLines();
+  parts_->fitNow();
+}
+
 void Scene::setPixelRatio(double ratio) {
   if (ratio == parts_->pixel_ratio) return;
   parts_->pixel_ratio = ratio;
@@ -252,7 +258,7 @@ void Scene::prepare() {
   contents.axes = p.settings.axes;
   contents.right = p.camera.right();
   contents.up = p.camera.trueUp();
-  if (p.camera.orthographic && !p.clouds.empty()) contents.scale_m_per_px = metresPerPixel();
+  if (p.camera.orthographic && !(p.clouds.empty() && p.extra_extent.empty())) contents.scale_m_per_px = metresPerPixel();
   if (p.settings.grid && p.grid_m > 0.0) contents.grid = "Grid " + shortestReal(p.grid_m) + " m";
   p.writeOver(contents, *this);
   p.overlay->show(contents);

@@ -111,6 +111,9 @@ class Scene {
   void setMeasured(const std::vector<Eigen::Vector3d>& places);
   const std::vector<Eigen::Vector3d>& measured() const;
 
+  // Corners of what others draw in this scene: framed and gridded where no scan is shown.
+  void setExtent(std::vector<Eigen::Vector3d> corners);
+
   // Camera. World frame: x right, y forward, z up; "front" looks along +y, "right" from +x.
   void setView(SceneView view);                  // of everything that is visible
   void frame(const std::vector<ScanId>& scans);  // the same direction, closer; empty: everything

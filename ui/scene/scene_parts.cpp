@@ -23,7 +23,7 @@ std::vector<Vector3d> Scene::Parts::extentPoints(const std::vector<ScanId>& scan
     if (within) continue;
     for (std::size_t axis = 0; axis < 3; ++axis) along[axis].push_back(stop[static_cast<int>(axis)]);
   }
-  if (along[0].empty()) return {};
+  if (along[0].empty()) return extra_extent;
   Vector3d low, high;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     auto& values = along[axis];

@@ -109,6 +109,7 @@ struct Scene::Parts {
 
   std::array<SceneLines, 2> paths;
   SceneLines grid, hovered, picked, box, measure;
+  std::vector<Eigen::Vector3d> extra_extent;  // eight corners, or none
   std::optional<CellPlace> hovered_cell, picked_cell;
   std::vector<std::pair<std::size_t, vtkSmartPointer<vtkBillboardTextActor3D>>> numbers;  // stop, its number
   double number_height_m = 0.0;
