@@ -48,6 +48,7 @@ void addEditActions(ActionRegistry& actions, WindowCommands& window);
 void addViewActions(ActionRegistry& actions, WindowCommands& window);
 void addLinkActions(ActionRegistry& actions, WindowCommands& window);
 void addOperationActions(ActionRegistry& actions, WindowCommands& window);
+void addStepperActions(ActionRegistry& actions, WindowCommands& window);
 void addHelpActions(ActionRegistry& actions, WindowCommands& window);
 
 }  // namespace tiltmap::ui

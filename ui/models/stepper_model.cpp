@@ -87,6 +87,11 @@ void StepperModel::refreshScans() {
   };
   gone(fixed_);
   gone(moving_);
+  // Something to begin with.
+  if (snapshot && !fixed_ && !moving_ && snapshot->scans().size() >= 2) {
+    fixed_ = snapshot->scans()[0].id;
+    moving_ = snapshot->scans()[1].id;
+  }
   QString problem;
   const auto chosen = settings(&problem);
   const ScanEntry* fixed = fixed_ ? snapshot->find(*fixed_) : nullptr;

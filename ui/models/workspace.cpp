@@ -14,9 +14,11 @@ Workspace::Workspace(Preferences& preferences, QObject* parent)
       jobs_(session_),
       display_(session_),
       relaxation_(std::make_unique<RelaxationModel>(session_, jobs_, display_)),
-      residuals_(session_) {
+      residuals_(session_),
+      stepper_(session_, preferences) {
   connect(&session_, &ProjectSession::failed, &messages_, &Messages::error);
   connect(&jobs_, &JobQueue::failed, &messages_, &Messages::error);
+  connect(&stepper_, &StepperModel::failed, &messages_, &Messages::error);
   connect(&jobs_, &JobQueue::finished, this, &Workspace::tellFinished);
   connect(&session_, &ProjectSession::snapshotReplaced, this,
           [this] { selection_.keepOnly(session_.snapshot().get()); });

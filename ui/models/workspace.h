@@ -10,6 +10,7 @@
 #include "ui/models/residuals.h"
 #include "ui/models/scan_display.h"
 #include "ui/models/selection.h"
+#include "ui/models/stepper_model.h"
 
 namespace tiltmap::ui {
 
@@ -38,6 +39,8 @@ class Workspace : public QObject {
   Residuals& residuals() { return residuals_; }
   // Every relaxation of this window, whoever started it.
   RelaxationModel& relaxation() { return *relaxation_; }
+  StepperModel& stepper() { return stepper_; }
+  const StepperModel& stepper() const { return stepper_; }
 
   // Starts an operation with the number of threads that the user prefers, unless `values` says otherwise. A
   // refusal is shown as a message; the job's id else.
@@ -56,6 +59,7 @@ class Workspace : public QObject {
   std::unique_ptr<RelaxationModel> relaxation_;
   Messages messages_;
   Residuals residuals_;
+  StepperModel stepper_;
 };
 
 }  // namespace tiltmap::ui

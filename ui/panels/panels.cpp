@@ -10,6 +10,9 @@
 #include "ui/panels/project_tree_panel.h"
 #include "ui/panels/relaxation_panel.h"
 #include "ui/panels/site_map_panel.h"
+#include "ui/panels/stepper_panel.h"
+#include "ui/panels/stepper_plots_panel.h"
+#include "ui/panels/stepper_view_panel.h"
 #include "ui/panels/view3d_panel.h"
 
 namespace tiltmap::ui {
@@ -37,6 +40,12 @@ const std::vector<PanelInfo>& panels() {
        make<RelaxationPanel>},
       {"sitemap", "Site map", "map-flat", "Stops and links in plan, coloured by quality", make<SiteMapPanel>},
       {"links", "Links", "link", "Every link with its figures, the worst first", make<LinksPanel>},
+      {"stepper", "ICP stepper", "register-pair", "Two scans registered one iteration after the other",
+       make<StepperPanel>},
+      {"stepper-view", "Registration view", "draw-cuboid",
+       "The stepper's two scans and their pairs in space", make<StepperViewPanel>},
+      {"stepper-plots", "Registration plots", "office-chart-line",
+       "Convergence, pairs and residuals of the stepper", make<StepperPlotsPanel>},
       {"history", "History", "view-history", "Every edit of the project, and a way back to it",
        make<HistoryPanel>},
       {"log", "Log", "text-x-log", "What the program did, line by line", make<LogPanel>},

@@ -63,6 +63,7 @@ MainWindow::MainWindow(Preferences& preferences, const Theme& theme, QWidget* pa
   connect(&workspace_->selection(), &Selection::linksChanged, this, refresh);
   connect(&workspace_->display(), &ScanDisplay::stageChanged, this, refresh);
   connect(&workspace_->jobs(), &JobQueue::busyChanged, this, refresh);
+  connect(&workspace_->stepper(), &StepperModel::stateChanged, this, refresh);
   connect(docks_, &DockArea::panelsChanged, this, refresh);
   connect(docks_, &DockArea::perspectiveChanged, this, refresh);
   connect(&workspace_->session(), &ProjectSession::opened, this, &MainWindow::showProject);
@@ -86,6 +87,7 @@ void MainWindow::addActions() {
   addEditActions(actions_, *this);
   addOperationActions(actions_, *this);
   addLinkActions(actions_, *this);
+  addStepperActions(actions_, *this);
   addViewActions(actions_, *this);
   addHelpActions(actions_, *this);
   for (QAction* action : actions_.all()) addAction(action);

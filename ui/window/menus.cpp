@@ -64,6 +64,8 @@ void MainWindow::makeMenus() {
   fill(registering, actions_, {"op.register", "op.rebase"});
   fill(registering, actions_, otherOperations());
   fill(registering, actions_,
+       {"", "stepper.open", "stepper.step", "stepper.back", "stepper.run", "stepper.accept", "stepper.discard"});
+  fill(registering, actions_,
        {"", "link.show", "link.register", "link.accept", "link.disable", "link.enable"});
   fill(menuBar()->addMenu("Re&lax"), actions_,
        {"op.relax", "", "panel.relax", "panel.sitemap", "panel.links", "", "job.cancel"});

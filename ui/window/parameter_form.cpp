@@ -84,12 +84,18 @@ void ParameterForm::refreshAll() {
   for (const auto& [name, row] : rows_) refresh(name);
 }
 
+void ParameterForm::leaveOut(const QStringList& parameters) {
+  left_out_ = parameters;
+  filter({});
+}
+
 void ParameterForm::filter(const QString& text) {
   for (const auto& [name, row] : rows_) {
     const ParameterInfo& info = model_.info(name);
-    const bool wanted = text.isEmpty() || name.contains(text, Qt::CaseInsensitive) ||
-                        parameterLabel(info).contains(text, Qt::CaseInsensitive) ||
-                        qt(info.help).contains(text, Qt::CaseInsensitive);
+    const bool wanted =
+        !left_out_.contains(name) && (text.isEmpty() || name.contains(text, Qt::CaseInsensitive) ||
+                                      parameterLabel(info).contains(text, Qt::CaseInsensitive) ||
+                                      qt(info.help).contains(text, Qt::CaseInsensitive));
     for (QWidget* widget : {static_cast<QWidget*>(row.label), row.editor, static_cast<QWidget*>(row.unit)})
       widget->setVisible(wanted);
     refresh(name);

@@ -1,6 +1,7 @@
 // A form made from an operation's parameters: label, editor, unit, reset; errors where the value is.
 #pragma once
 
+#include <QStringList>
 #include <QWidget>
 #include <map>
 #include <vector>
@@ -22,6 +23,8 @@ class ParameterForm : public QWidget {
   ParameterForm(ParameterModel& model, Preferences& preferences, const Theme& theme,
                 QWidget* parent = nullptr);
 
+  // Rows that are never shown.
+  void leaveOut(const QStringList& parameters);
   // Only rows whose label, help or name hold the text; all for an empty one.
   void filter(const QString& text);
   QWidget* editor(const QString& parameter) const;
@@ -42,6 +45,7 @@ class ParameterForm : public QWidget {
   ParameterModel& model_;
   const Theme& theme_;
   std::map<QString, Row> rows_;
+  QStringList left_out_;
 };
 
 }  // namespace tiltmap::ui

@@ -49,12 +49,15 @@ std::vector<DockPlace> delivered(Perspective perspective) {
               {"log", Tab, "details", 0}};
     case Perspective::Register:
       return {{"view3d", Left, "", 0},
-              {"project-tree", Left, "view3d", 0.24},
+              {"stepper-view", Tab, "view3d", 0},
+              {"project-tree", Left, "view3d", 0.2},
               {"details", Bottom, "project-tree", 0.45},
-              {"depth-image", Bottom, "view3d", 0.34},
-              {"localisation", Right, "depth-image", 0.5},
-              {"history", Tab, "localisation", 0},
-              {"log", Tab, "localisation", 0}};
+              {"stepper", Right, "view3d", 0.34},
+              {"stepper-plots", Bottom, "view3d", 0.34},
+              {"depth-image", Tab, "stepper-plots", 0},
+              {"localisation", Tab, "stepper-plots", 0},
+              {"history", Tab, "details", 0},
+              {"log", Tab, "details", 0}};
     case Perspective::Relax:
       return {{"view3d", Left, "", 0},
               {"project-tree", Left, "view3d", 0.24},
