@@ -54,6 +54,17 @@ double scoreAt(const PreparedScan& fixed, const PreparedScan& moving, const Pose
   return static_cast<double>(system.agreeing_moving) / static_cast<double>(sample.size());
 }
 
+// Level ground looks the same from every heading: what stands up tells them apart.
+std::vector<std::uint32_t> standing(const std::vector<std::uint32_t>& sample, const SurfaceElements& elements,
+                                    const Pose& start) {
+  constexpr double kLevelCos = 0.8;
+  const Eigen::Vector3d up = start.quaternion().inverse() * Eigen::Vector3d::UnitZ();
+  std::vector<std::uint32_t> chosen;
+  for (const std::uint32_t i : sample)
+    if (std::abs(elements.normal[i].dot(up)) < kLevelCos) chosen.push_back(i);
+  return chosen.empty() ? sample : chosen;
+}
+
 }  // namespace
 
 Result<HeadingSweep> sweepHeadings(const PreparedScan& fixed, const PreparedScan& moving,
@@ -63,7 +74,8 @@ Result<HeadingSweep> sweepHeadings(const PreparedScan& fixed, const PreparedScan
     return fail("the start pose is not finite", "heading sweep", "give the pair a start of numbers");
   if (!(sweep.step_rad >= 0.1 * kDegree && sweep.step_rad <= 90.0 * kDegree))
     return fail("the step of the sweep is out of 0.1 to 90 degrees", "heading sweep", "give 3, say");
-  const std::vector<std::uint32_t> sample = sampledElements(moving.elements, settings);
+  const std::vector<std::uint32_t> sample =
+      standing(sampledElements(moving.elements, settings), moving.elements, start_fixed_from_moving);
   if (sample.empty() || fixed.elements.empty())
     return fail("one of the two scans holds nothing to compare", "heading sweep", "choose other scans");
   HeadingSweep result;

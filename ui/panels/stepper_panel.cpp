@@ -71,6 +71,7 @@ StepperPanel::StepperPanel(const PanelContext& context, QWidget* parent)
   scroll->setFrameShape(QFrame::NoFrame);
   scroll->setFocusPolicy(Qt::NoFocus);
   scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  scroll->setMinimumWidth(280);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(0);
@@ -256,7 +257,8 @@ QWidget* StepperPanel::buildMotion() {
   grid->setContentsMargins(0, 0, 0, 0);
   grid->setHorizontalSpacing(8);
   grid->setVerticalSpacing(2);
-  const QFont mono = QFontDatabase::systemFont(QFontDatabase::FixedFont);
+  QFont mono = QFontDatabase::systemFont(QFontDatabase::FixedFont);
+  mono.setPointSizeF(font().pointSizeF() - 1.0);
   auto* rotation = new QLabel("Rotation R", matrix);
   auto* translation = new QLabel("t (m)", matrix);
   translation->setAlignment(Qt::AlignRight);
@@ -371,7 +373,7 @@ void StepperPanel::refreshPosition() {
   const Pose motion = step ? step->report.motion : Pose();
   const Eigen::Matrix3d rotation = motion.rotation();
   for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) motion_[r][c]->setText(QString::number(rotation(r, c), 'f', 6));
+    for (int c = 0; c < 3; ++c) motion_[r][c]->setText(QString::number(rotation(r, c), 'f', 5));
     motion_[r][3]->setText(QString::number(motion.translation()[r], 'f', 4));
   }
   const Pose pose = model_.pose();
