@@ -5,6 +5,7 @@
 #include "app/cli/operation_runner.h"
 #include "core/base/text.h"
 #include "core/products/png.h"
+#include "core/project/operations/pair_list.h"
 #include "ui/scene/screenshots.h"
 #include "ui/window/window_screenshot.h"
 
@@ -17,6 +18,8 @@ struct ScreenshotWords {
   std::string panel = "map", size, stage, view = "iso", colour = "scan", quantity = "range", points = "all";
   std::string perspective = "inspect", theme = "dark";
   std::vector<std::string> front;
+  std::string pair, preset = "default";
+  int iteration = -1;
   double scale = 1.0;
   long long scan = -1;
   double point_size = 2.0;
@@ -88,6 +91,17 @@ Result<RgbImage> windowPicture(const SnapshotPtr& snapshot, const ScreenshotWord
   settings.perspective = ui::parsePerspective(words.perspective).value_or(ui::Perspective::Inspect);
   settings.front = words.front;
   if (words.scan >= 0) settings.scan = static_cast<std::size_t>(words.scan);
+  if (!words.pair.empty()) {
+    const auto pairs = parsePairList(words.pair, static_cast<int>(snapshot->scans().size()));
+    if (!pairs) return fail(pairs.error());
+    if (auto known = operations().find("register")->presetValues(words.preset); !known)
+      return fail(known.error());
+    settings.stepped = {static_cast<std::size_t>(pairs->front().first),
+                        static_cast<std::size_t>(pairs->front().second),
+                        words.preset,
+                        {}};
+    if (words.iteration >= 0) settings.stepped->iteration = words.iteration;
+  }
   if (!words.stage.empty()) {
     const auto stage = stageOrLatest(*snapshot, words.stage);
     if (!stage) return fail(stage.error());
@@ -160,6 +174,12 @@ void addScreenshot(CLI::App& app, Chosen& chosen) {
       ->check(CLI::IsMember({"capture", "inspect", "register", "relax"}));
   command->add_option("--front", words->front, "Panels of the window that are brought to the front")
       ->check(CLI::IsMember(panels));
+  command->add_option("--pair", words->pair, "FIXED:MOVING that the ICP stepper shows, run to its end");
+  command
+      ->add_option("--iteration", words->iteration, "Of the ICP stepper, 0 is the start; default: the last")
+      ->check(CLI::NonNegativeNumber)
+      ->needs("--pair");
+  command->add_option("--preset", words->preset, "Of the ICP stepper: default or thesis")->needs("--pair");
   command->add_option("--theme", words->theme, "Of window and panels: dark or light")
       ->check(CLI::IsMember({"dark", "light"}));
   command->add_option("--scale", words->scale, "Of window and panels, as on a fine screen: 1 to 4")

@@ -6,6 +6,7 @@
 
 #include "ui/models/step_table_model.h"
 #include "ui/models/workspace.h"
+#include "ui/panels/slices_tab.h"
 #include "ui/panels/stepper_plots.h"
 #include "ui/panels/table_view.h"
 
@@ -31,6 +32,8 @@ StepperPlotsPanel::StepperPlotsPanel(const PanelContext& context, QWidget* paren
   tabs_->addTab(table_, "Iterations");
   auto* headings = new HeadingPlot(context, tabs_);
   tabs_->addTab(headings, "Headings");
+  auto* slices = new SlicesTab(context, tabs_);
+  tabs_->addTab(slices, "Slices");
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(tabs_);

@@ -4,6 +4,7 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPainter>
+#include <QSpinBox>
 #include <QStackedLayout>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -13,6 +14,7 @@
 #include "ui/look/icons.h"
 #include "ui/look/theme.h"
 #include "ui/models/strings.h"
+#include "ui/models/study_model.h"
 #include "ui/models/workspace.h"
 #include "ui/panels/stepper_scene_widget.h"
 
@@ -86,6 +88,7 @@ StepperViewPanel::StepperViewPanel(const PanelContext& context, QWidget* parent)
     : QWidget(parent),
       context_(context),
       model_(context.workspace.stepper()),
+      study_(StudyModel::of(model_)),
       scene_(std::make_unique<Scene>()),
       layer_(std::make_unique<RegistrationLayer>(*scene_)) {
   view_ = new StepperSceneWidget(*scene_, *layer_, model_.start(), this);
@@ -120,6 +123,7 @@ StepperViewPanel::StepperViewPanel(const PanelContext& context, QWidget* parent)
   connect(&model_, &StepperModel::choiceChanged, this, &StepperViewPanel::loadScans);
   connect(&model_, &StepperModel::positionChanged, this, &StepperViewPanel::showStep);
   connect(&model_, &StepperModel::pickedChanged, this, &StepperViewPanel::showPicked);
+  connect(&study_, &StudyModel::treeChanged, this, &StepperViewPanel::showTree);
   connect(&model_.start(), &StartModel::ghostChanged, this, &StepperViewPanel::showGhost);
   connect(&model_.start(), &StartModel::pointPairsChanged, this, &StepperViewPanel::showMarks);
   connect(&context.theme, &Theme::changed, this, &StepperViewPanel::applyTheme);
@@ -163,6 +167,15 @@ QWidget* StepperViewPanel::buildBar() {
              "Outlines of the plane patches that are paired, coloured by the fate of their pair", false);
   found_ = toggle(bar, "stepper-as-found", "As found",
                   "Show the moving scan where the step's pairs were found, before its motion", false);
+  tree_ = toggle(bar, "stepper-show-tree", "Tree",
+                 "The kD-tree's cells, and the leaves that the search for the picked pair looks into", false);
+  depth_ = new QSpinBox(bar);
+  depth_->setObjectName("stepper-tree-depth");
+  depth_->setAccessibleName("Depth of the cells shown");
+  depth_->setToolTip("Cells down to this level, 0 (the whole) to 12");
+  depth_->setRange(0, 12);
+  depth_->setValue(study_.treeDepth());
+  depth_->setVisible(false);
   adjust_ =
       toggle(bar, "stepper-adjust", "Move start",
              "Drag the handles, or use arrows, page up and down, comma and period, to move the start", false);
@@ -170,7 +183,14 @@ QWidget* StepperViewPanel::buildBar() {
       toggle(bar, "stepper-pick-points", "Pick points",
              "Click the same places in both scans, the fixed one first: three pairs give a start", false);
   row->addWidget(title_, 1);
-  for (QToolButton* button : {points_, patches_, found_, adjust_, pick_points_}) row->addWidget(button);
+  for (QWidget* control :
+       std::initializer_list<QWidget*>{points_, patches_, found_, tree_, depth_, adjust_, pick_points_})
+    row->addWidget(control);
+  connect(tree_, &QToolButton::toggled, this, [this](bool on) {
+    depth_->setVisible(on);
+    study_.setTreeShown(on);
+  });
+  connect(depth_, qOverload<int>(&QSpinBox::valueChanged), &study_, &StudyModel::setTreeDepth);
   connect(points_, &QToolButton::toggled, this, [this](bool on) {
     layer_->setPointsShown(on);
     view_->drawSoon();
@@ -248,7 +268,7 @@ void StepperViewPanel::loadScans() {
           ? QString("Moving %1, orange, on fixed %2, grey").arg(model_.scanName(false), model_.scanName(true))
           : QString());
   title_->setToolTip(title_->text());
-  for (QToolButton* button : {points_, patches_, found_, adjust_, pick_points_})
+  for (QToolButton* button : {points_, patches_, found_, tree_, adjust_, pick_points_})
     button->setEnabled(scans != nullptr);
   if (!scans) {
     loader_.cancel();
@@ -275,6 +295,7 @@ void StepperViewPanel::loadScans() {
 }
 
 void StepperViewPanel::showStep() {
+  layer_->setPixelRatio(devicePixelRatioF());
   layer_->place(found_->isChecked() ? model_.poseBefore() : model_.pose());
   layer_->setPairs(model_.attempt(), model_.pairs(), shownFates(), patches_->isChecked());
   paintLegend();
@@ -303,6 +324,11 @@ void StepperViewPanel::showMarks() {
   view_->drawSoon();
 }
 
+void StepperViewPanel::showTree() {
+  layer_->setTree(study_.cells(), study_.visit(), study_.query());
+  showPicked();
+}
+
 void StepperViewPanel::showPicked() {
   layer_->setPicked(model_.picked());
   QString text = model_.pickedSentence();
@@ -316,6 +342,8 @@ void StepperViewPanel::showPicked() {
   else if (text.isEmpty())
     text =
         model_.current() ? "Click a pair to have it explained." : "The pairs show here once a step is taken.";
+  if (const QString tree = study_.treeSentence(); !tree.isEmpty() && !pick_points_->isChecked())
+    text = model_.picked() ? text + " " + tree : tree;
   sentence_->setText(text);
   view_->drawSoon();
 }

@@ -15,11 +15,13 @@ class QCheckBox;
 class QImage;
 class QLabel;
 class QStackedLayout;
+class QSpinBox;
 class QToolButton;
 
 namespace tiltmap::ui {
 
 class StepperModel;
+class StudyModel;
 class StepperSceneWidget;
 
 class StepperViewPanel : public QWidget {
@@ -45,6 +47,7 @@ class StepperViewPanel : public QWidget {
   void showGhost();
   void showMarks();
   void showPicked();
+  void showTree();
   void applyTheme();
   void paintLegend();
   void clicked(const QPointF& place);
@@ -52,13 +55,15 @@ class StepperViewPanel : public QWidget {
 
   PanelContext context_;
   StepperModel& model_;
+  StudyModel& study_;
   std::unique_ptr<Scene> scene_;
   std::unique_ptr<RegistrationLayer> layer_;
   StepperSceneWidget* view_;
   QWidget* empty_;
   QStackedLayout* pages_;
   QLabel *title_, *sentence_;
-  QToolButton *points_, *patches_, *found_, *adjust_, *pick_points_;
+  QToolButton *points_, *patches_, *found_, *tree_, *adjust_, *pick_points_;
+  QSpinBox* depth_;
   std::map<RejectReason, QCheckBox*> fates_;
   const void* loaded_ = nullptr;  // the scans whose points are drawn
   BackgroundWorker loader_;

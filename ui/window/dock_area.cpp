@@ -145,7 +145,9 @@ void DockArea::arrange(Perspective perspective) {
   // Known to the manager, closed, so that they can be restored and opened.
   for (const auto& [id, dock] : docks_)
     if (!placed.contains(id)) {
-      manager_->addDockWidget(ads::RightDockWidgetArea, dock);
+      // As tabs: side by side they would ask for more width than a screen has before they are closed.
+      manager_->addDockWidget(first.isEmpty() ? ads::RightDockWidgetArea : ads::CenterDockWidgetArea, dock,
+                              first.isEmpty() ? nullptr : placed.at(first));
       dock->toggleView(false);
     }
   for (const auto& [id, area] : placed) area->setCurrentIndex(0);

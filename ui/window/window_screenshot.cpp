@@ -73,11 +73,36 @@ void arrange(MainWindow& window, const WindowScreenshot& settings) {
   if (settings.scan) workspace.selection().setCurrentScan(snapshot->scans()[*settings.scan].id);
 }
 
+// Runs the stepper's pair to its end and goes to the iteration.
+Status step(StepperModel& stepper, const ProjectSnapshot& snapshot, const WindowScreenshot::Stepped& wanted) {
+  stepper.parameters().setPreset(qt(wanted.preset));
+  stepper.choose(snapshot.scans()[wanted.fixed].id, snapshot.scans()[wanted.moving].id);
+  if (!stepper.isReady())
+    return fail(utf8(stepper.problem()), "--pair", "name two scans of the project, as 0:1");
+  stepper.setPace(0);
+  stepper.run();
+  while (!stepper.isEnded() && (stepper.isRunning() || stepper.isWorking()))
+    QApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 20);
+  if (!stepper.isEnded())
+    return fail("the pair cannot be registered", "--pair",
+                "`tiltmap verify` says whether its scans can be read");
+  if (wanted.iteration && *wanted.iteration > stepper.count())
+    return fail("there is no iteration " + std::to_string(*wanted.iteration), "--iteration",
+                "the registration ends after " + std::to_string(stepper.count()));
+  stepper.goTo(wanted.iteration.value_or(stepper.count()));
+  return {};
+}
+
 Result<QImage> shoot(MainWindow& window, const WindowScreenshot& settings) {
   window.resize(settings.width_px, settings.height_px);
   window.show();
   window.resize(settings.width_px, settings.height_px);
   arrange(window, settings);
+  if (settings.stepped)
+    if (Status stepped =
+            step(window.workspace().stepper(), *window.workspace().snapshot(), *settings.stepped);
+        !stepped)
+      return fail(stepped.error());
   settle(window.workspace().jobs());
   if (settings.panel == "window") return pictureOf(window);
   for (const PanelInfo& info : panels()) {
@@ -98,6 +123,9 @@ Status checkSettings(const ProjectSnapshot& snapshot, const WindowScreenshot& se
       return fail("a window of " + std::to_string(settings.width_px) + " x " +
                       std::to_string(settings.height_px) + " pixels cannot be drawn",
                   "--size", "choose 160 to 8192 pixels for either side, scaling included");
+  if (settings.stepped)
+    for (const std::size_t place : {settings.stepped->fixed, settings.stepped->moving})
+      if (const auto scan = snapshot.scanAt(static_cast<long long>(place)); !scan) return fail(scan.error());
   if (settings.scan)
     if (const auto scan = snapshot.scanAt(static_cast<long long>(*settings.scan)); !scan)
       return fail(scan.error());

@@ -23,7 +23,13 @@ struct WindowScreenshot {
   Perspective perspective = Perspective::Inspect;
   std::vector<std::string> front;   // panels that are brought to the front
   std::optional<std::size_t> scan;  // selected
-  std::optional<Stage> stage;       // whose poses place the scans; nothing: the latest
+  struct Stepped {
+    std::size_t fixed = 0, moving = 1;  // places of the scans
+    std::string preset = "default";
+    std::optional<int> iteration;  // 0 is the start; nothing: the last
+  };
+  std::optional<Stepped> stepped;  // what the ICP stepper shows, run to its end
+  std::optional<Stage> stage;      // whose poses place the scans; nothing: the latest
 };
 
 // "capture", "inspect", "register", "relax".
