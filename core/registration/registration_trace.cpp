@@ -208,7 +208,7 @@ std::string pairSentence(const TraceAttempt& attempt, const TraceStep& step, con
 }
 
 std::string lossSentence(const TraceAttempt& attempt, const LossScale& loss) {
-  if (attempt.settings.loss == Loss::None) return "none: every kept pair counts the same";
+  if (attempt.settings.loss == Loss::None) return "none, every kept pair counts the same";
   if (loss.isOwn())
     return fixedReal(loss.deviations, 1) + " deviations of each pair, " + lengthWords(loss.scale_m) +
            " added to what its patches explain";
