@@ -2,20 +2,62 @@
 // layer's own files only.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 #include <vtkActor.h>
 #include <vtkCellArray.h>
+#include <vtkFloatArray.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
 #include <vtkUnsignedCharArray.h>
 
 #include "core/registration/surface_elements.h"
 #include "ui/scene/registration_layer.h"
 
 namespace tiltmap::ui {
+
+// The points of one scan in one colour.
+struct PointDrawing {
+  vtkNew<vtkPolyData> data;
+  vtkNew<vtkPolyDataMapper> mapper;
+  vtkNew<vtkActor> actor;
+
+  PointDrawing() {
+    mapper->SetInputData(data);
+    mapper->SetColorModeToDirectScalars();
+    mapper->StaticOn();
+    actor->SetMapper(mapper);
+    actor->GetProperty()->LightingOff();
+    actor->PickableOff();
+  }
+  // Three floats a point. `owner_stays`: the memory outlives this drawing and is not copied.
+  void setPoints(const std::vector<float>& xyz, bool owner_stays) {
+    vtkNew<vtkFloatArray> array;
+    array->SetNumberOfComponents(3);
+    const auto count = static_cast<vtkIdType>(xyz.size());
+    if (owner_stays) {
+      array->SetArray(const_cast<float*>(xyz.data()), count, 1);
+    } else {
+      array->SetNumberOfTuples(count / 3);
+      std::copy(xyz.begin(), xyz.end(), array->GetPointer(0));
+    }
+    vtkNew<vtkPoints> points;
+    points->SetData(array);
+    vtkNew<vtkCellArray> cells;
+    if (count > 0) {
+      cells->InsertNextCell(static_cast<int>(count / 3));
+      for (vtkIdType i = 0; i < count / 3; ++i) cells->InsertCellPoint(i);
+    }
+    data->Initialize();
+    data->SetPoints(points);
+    data->SetVerts(cells);
+    mapper->Modified();
+  }
+};
 
 // Line segments and dots, each of its own colour.
 class LineShape {

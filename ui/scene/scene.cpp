@@ -258,7 +258,8 @@ void Scene::prepare() {
   contents.axes = p.settings.axes;
   contents.right = p.camera.right();
   contents.up = p.camera.trueUp();
-  if (p.camera.orthographic && !(p.clouds.empty() && p.extra_extent.empty())) contents.scale_m_per_px = metresPerPixel();
+  if (p.camera.orthographic && !(p.clouds.empty() && p.extra_extent.empty()))
+    contents.scale_m_per_px = metresPerPixel();
   if (p.settings.grid && p.grid_m > 0.0) contents.grid = "Grid " + shortestReal(p.grid_m) + " m";
   p.writeOver(contents, *this);
   p.overlay->show(contents);
