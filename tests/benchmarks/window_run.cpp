@@ -60,6 +60,7 @@ bool addWindowRows(Table& table, const fs::path& benchmark, const fs::path& prog
     kept = kept && rate >= 20.0 && points >= 50000;
     Row moving{.subject = frames, .program = "turning, by " + how};
     moving.wall_ms = 1e3 / rate;
+    moving.cpu_ms = json.at("cpu_ms_per_frame").get<double>();
     moving.remark =
         formatted("%.1f frames/s, slowest twentieth %.0f ms, %lld points in %d tiles of 24 px", rate,
                   json.at("slowest_twentieth_ms").get<double>(), points, json.at("moving_tiles").get<int>());

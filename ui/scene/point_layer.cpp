@@ -186,9 +186,8 @@ std::vector<std::size_t> PointLayer::fewOf(int side) const {
   return counts(std::exp(high));
 }
 
-void PointLayer::drawRange(PointBatch& batch, std::size_t index, int side, std::size_t from, std::size_t to) {
+void PointLayer::drawRange(const PointBatch& batch, int side, std::size_t from, std::size_t to) {
   if (from >= to) return;
-  auto& picture = graphics_->pictures[static_cast<std::size_t>(side)];
   auto& buffers = graphics_->buffers[batch.id];
   if (buffers.places == 0) {
     glGenBuffers(1, &buffers.places);
@@ -229,7 +228,64 @@ void PointLayer::drawRange(PointBatch& batch, std::size_t index, int side, std::
                      static_cast<float>(batch.ink.g) / 255.0F, static_cast<float>(batch.ink.b) / 255.0F);
   }
   glDrawArrays(GL_POINTS, static_cast<GLint>(from), static_cast<GLsizei>(to - from));
-  picture.drawn[index] = to;
+}
+
+// Before any points: their shader, their size, and that nothing of the state is left from others.
+bool PointLayer::beginPoints(vtkOpenGLRenderWindow& window, const Vector2i& size) {
+  vtkOpenGLState& state = *window.GetState();
+  graphics_->program = window.GetShaderCache()->ReadyShaderProgram(kPointVertices, kPointFragments, "");
+  if (!graphics_->program) return false;
+  vtkShaderProgram& program = *graphics_->program;
+  const auto handle = static_cast<GLuint>(program.GetHandle());
+  graphics_->place_at = glGetAttribLocation(handle, "place");
+  graphics_->colour_at = glGetAttribLocation(handle, "colour");
+  program.SetUniformi("boxed", look_.box ? 1 : 0);
+  if (look_.box) {
+    program.SetUniform3f("boxLow", look_.box->low.data());
+    program.SetUniform3f("boxHigh", look_.box->high.data());
+  }
+  if (graphics_->arrays == 0) glGenVertexArrays(1, &graphics_->arrays);
+  glBindVertexArray(graphics_->arrays);
+  state.vtkglEnable(GL_DEPTH_TEST);
+  state.vtkglDepthMask(1);
+  state.vtkglDepthFunc(GL_LEQUAL);
+  state.vtkglDisable(GL_BLEND);
+  state.vtkglViewport(0, 0, size.x(), size.y());
+  state.vtkglPointSize(static_cast<float>(look_.point_px));
+  glDisable(GL_PROGRAM_POINT_SIZE);
+  return true;
+}
+
+void PointLayer::endPoints() {
+  glBindVertexArray(0);
+  glBindBuffer(GL_ARRAY_BUFFER, 0);
+}
+
+// Straight into the window's picture: a frame while moving is not needed again.
+void PointLayer::drawPassing(int side, vtkOpenGLRenderWindow& window, const Vector2i& size) {
+  graphics_->pictures[static_cast<std::size_t>(side)].begun = false;
+  if (!beginPoints(window, size)) return;
+  const std::vector<std::size_t> counts = fewOf(side);
+  for (std::size_t i = 0; i < batches_.size(); ++i)
+    if (batches_[i]->visible)
+      drawRange(*batches_[i], side, 0, std::min(counts[i], batches_[i]->points->size()));
+  endPoints();
+}
+
+// Where each batch is to end after this piece: the same share of what is missing everywhere, so that the
+// picture fills up evenly.
+std::vector<std::size_t> PointLayer::nextEnds(const Picture& picture) const {
+  std::size_t missing = 0;
+  for (std::size_t i = 0; i < batches_.size(); ++i)
+    if (batches_[i]->visible) missing += batches_[i]->points->size() - picture.drawn[i];
+  const double share =
+      missing == 0 ? 1.0 : std::min(1.0, static_cast<double>(picture.piece) / static_cast<double>(missing));
+  std::vector<std::size_t> ends = picture.drawn;
+  for (std::size_t i = 0; i < batches_.size(); ++i)
+    if (batches_[i]->visible)
+      ends[i] += static_cast<std::size_t>(
+          std::ceil(share * static_cast<double>(batches_[i]->points->size() - picture.drawn[i])));
+  return ends;
 }
 
 void PointLayer::drawSide(int side, vtkOpenGLRenderWindow& window, const Vector2i& size) {
@@ -251,58 +307,29 @@ void PointLayer::drawSide(int side, vtkOpenGLRenderWindow& window, const Vector2
     state.vtkglDepthMask(1);
     state.vtkglClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   }
-  graphics_->program = window.GetShaderCache()->ReadyShaderProgram(kPointVertices, kPointFragments, "");
-  if (graphics_->program) {
-    vtkShaderProgram& program = *graphics_->program;
-    const auto handle = static_cast<GLuint>(program.GetHandle());
-    graphics_->place_at = glGetAttribLocation(handle, "place");
-    graphics_->colour_at = glGetAttribLocation(handle, "colour");
-    program.SetUniformi("boxed", look_.box ? 1 : 0);
-    if (look_.box) {
-      program.SetUniform3f("boxLow", look_.box->low.data());
-      program.SetUniform3f("boxHigh", look_.box->high.data());
-    }
-    if (graphics_->arrays == 0) glGenVertexArrays(1, &graphics_->arrays);
-    glBindVertexArray(graphics_->arrays);
-    state.vtkglEnable(GL_DEPTH_TEST);
-    state.vtkglDepthFunc(GL_LEQUAL);
-    state.vtkglDisable(GL_BLEND);
-    state.vtkglViewport(0, 0, size.x(), size.y());
-    state.vtkglPointSize(static_cast<float>(look_.point_px));
-    glDisable(GL_PROGRAM_POINT_SIZE);
+  if (beginPoints(window, size)) {
     const auto draw = [&](const std::vector<std::size_t>& ends) {
-      for (std::size_t i = 0; i < batches_.size(); ++i)
-        if (batches_[i]->visible)
-          drawRange(*batches_[i], i, side, picture.drawn[i], std::min(ends[i], batches_[i]->points->size()));
+      for (std::size_t i = 0; i < batches_.size(); ++i) {
+        if (!batches_[i]->visible) continue;
+        const std::size_t end = std::min(ends[i], batches_[i]->points->size());
+        drawRange(*batches_[i], side, picture.drawn[i], end);
+        picture.drawn[i] = std::max(picture.drawn[i], end);
+      }
     };
-    const bool gradually = gradual_ || moving_;
-    if (!gradually) {
+    if (!gradual_ && !moving_) {
       draw(std::vector<std::size_t>(batches_.size(), std::numeric_limits<std::size_t>::max()));
     } else if (anew) {
       draw(fewOf(side));
     } else if (!moving_) {
-      // The same share of what is missing everywhere, so that the picture fills up evenly.
-      std::size_t missing = 0;
-      for (std::size_t i = 0; i < batches_.size(); ++i)
-        if (batches_[i]->visible) missing += batches_[i]->points->size() - picture.drawn[i];
-      const double share =
-          missing == 0 ? 1.0
-                       : std::min(1.0, static_cast<double>(picture.piece) / static_cast<double>(missing));
-      std::vector<std::size_t> ends = picture.drawn;
-      for (std::size_t i = 0; i < batches_.size(); ++i)
-        if (batches_[i]->visible)
-          ends[i] += static_cast<std::size_t>(
-              std::ceil(share * static_cast<double>(batches_[i]->points->size() - picture.drawn[i])));
       const auto before = std::chrono::steady_clock::now();
-      draw(ends);
+      draw(nextEnds(picture));
       glFinish();
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
       const double factor = std::clamp(kMoment_s / std::max(seconds, 1e-4), 0.5, 2.0);
       picture.piece = static_cast<std::size_t>(
           std::clamp(factor * static_cast<double>(picture.piece), 20'000.0, 20'000'000.0));
     }
-    glBindVertexArray(0);
-    glBindBuffer(GL_ARRAY_BUFFER, 0);
+    endPoints();
   }
   state.PopFramebufferBindings();
 }
@@ -387,10 +414,13 @@ int PointLayer::RenderOpaqueGeometry(vtkViewport* viewport) {
     const vtkOpenGLState::ScopedglViewport area(&state);
     const vtkOpenGLState::ScopedglClearColor colour(&state);
     state.vtkglDisable(GL_SCISSOR_TEST);
-    for (const int side : {0, 1})
-      if (shows(side)) drawSide(side, *window, size);
+    if (passes())
+      drawPassing(mix_.only_before ? 1 : 0, *window, size);
+    else
+      for (const int side : {0, 1})
+        if (shows(side)) drawSide(side, *window, size);
   }
-  compose(*window);
+  if (!passes()) compose(*window);
   drawSideActors(*renderer, size);
   return 1;
 }

@@ -94,7 +94,13 @@ class PointLayer : public vtkProp {
   struct Picture;
   bool shows(int side) const;
   void drawSide(int side, vtkOpenGLRenderWindow& window, const Eigen::Vector2i& size);
-  void drawRange(PointBatch& batch, std::size_t index, int side, std::size_t from, std::size_t to);
+  // Nothing but points, and those only for this frame.
+  bool passes() const { return moving_ && !mix_.shaded && !mix_.divider; }
+  bool beginPoints(vtkOpenGLRenderWindow& window, const Eigen::Vector2i& size);
+  static void endPoints();
+  void drawPassing(int side, vtkOpenGLRenderWindow& window, const Eigen::Vector2i& size);
+  std::vector<std::size_t> nextEnds(const Picture& picture) const;
+  void drawRange(const PointBatch& batch, int side, std::size_t from, std::size_t to);
   void compose(vtkOpenGLRenderWindow& window);
   void drawSideActors(vtkRenderer& renderer, const Eigen::Vector2i& size);
 

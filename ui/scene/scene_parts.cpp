@@ -244,6 +244,13 @@ void Scene::Parts::lookAtPoints() {
         include(cloud->batch.world_from_scan[side] * cloud->middle, cloud->radius_m + 1.0);
   for (const auto& side : stops)
     for (const Pose& stop : side) include(stop.translation(), 25.0);  // its arrow
+  // What others draw among the points; marks over everything are in the front renderer and change nothing
+  // here.
+  double bounds[6];
+  renderer->ComputeVisiblePropBounds(bounds);
+  if (bounds[0] <= bounds[1])
+    for (int k = 0; k < 8; ++k)
+      include({bounds[k & 1], bounds[2 + (k >> 1 & 1)], bounds[4 + (k >> 2 & 1)]}, 0.1);
   if (!std::isfinite(near_m)) include(camera.focus, camera.distance());
   far_m = std::max(far_m, 1.0);
   near_m = std::max(near_m, 0.001 * far_m);
