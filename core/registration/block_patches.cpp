@@ -38,7 +38,7 @@ class Pyramid {
     if (m.n < settings_.patch_min_points) return;
     const Eigen::Matrix3d covariance = m.covariance();
     // The variance of a uniform line of length L is L^2 / 12.
-    const double largest = settings_.patch_size_m * settings_.patch_size_m / 12.0;
+    const double largest = settings_.patch_block_m * settings_.patch_block_m / 12.0;
     if (level > 0 && covariance.trace() > 2.0 * largest) return split(level, row, column);
     solver_.computeDirect(covariance);
     const Eigen::Vector3d values = solver_.eigenvalues();
@@ -55,7 +55,8 @@ class Pyramid {
     if (!short_m) return;
     const auto patch = static_cast<std::uint32_t>(out_.elements.size());
     const Eigen::Vector3d place = mean + *short_m * mean.normalized();
-    if (!appendPatch(place, values, axes, m.n, out_.elements)) return;
+    const ResidualPrior prior{settings_.patch_noise_m, settings_.patch_prior};
+    if (!appendPatch(place, values, axes, m.n, out_.elements, prior)) return;
     const int first_row = row << level, first_column = column << level;
     const MomentGrid& tiles = levels_.front();
     const int last_row = std::min(tiles.rows, (row + 1) << level);

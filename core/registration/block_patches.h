@@ -14,7 +14,7 @@ struct BlockPatches {
 };
 
 // Tiles of patch_rows x patch_columns cells are added up in twos to ever larger blocks (a pyramid of
-// moments); from the largest down, a block that fits the noise model and is no larger than patch_size_m is
+// moments); from the largest down, a block that fits the noise model and is no larger than patch_block_m is
 // one patch, any other is looked at by its four parts. A tile that does not fit is kept where it fits the
 // wider model of rough surfaces. `image` must be a matrix.
 BlockPatches blockPatches(const RangeImage& image, const ScannerGeometry& geometry,

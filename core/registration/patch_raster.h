@@ -22,7 +22,7 @@ class PatchRaster {
   void closeGaps();
 
   // Calls visit(patch) for what lies in the direction of `p` and around it, at most nine times, never twice
-  // the same in a row. `reach` in cells (about 3 deg).
+  // the same in a row. `reach` in cells of 1.5 deg.
   template <class Visit>
   void around(const Eigen::Vector3d& p, int reach, Visit&& visit) const {
     int row = 0, column = 0;
@@ -44,8 +44,8 @@ class PatchRaster {
   }
 
  private:
-  static constexpr int kRows = 144;    // about the x axis, 2.5 deg each, all round
-  static constexpr int kColumns = 60;  // from the x axis, 3 deg each
+  static constexpr int kRows = 240;     // about the x axis, 1.5 deg each, all round
+  static constexpr int kColumns = 120;  // from the x axis, 1.5 deg each
   bool place(const Eigen::Vector3d& p, int& row, int& column) const;
 
   std::vector<std::uint32_t> cell_;

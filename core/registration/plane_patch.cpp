@@ -8,16 +8,20 @@ namespace tiltmap {
 namespace {
 
 constexpr double kResidualFloor_m = 0.002;  // no surface measured by us is known better, ours
-constexpr double kOffsetFloor_m = 0.001;
+constexpr double kOffsetFloor_m = 0.0005;
+constexpr double kPlaneFreedom = 3.0;
 constexpr double kLongestSpot_m = 2.0;  // from 2 s to 2 s; an LMS' pulse is some 2.5 m long
+
+double cosIncidence(const Eigen::Vector3d& mean, const Eigen::Vector3d& normal) {
+  const double range = mean.norm();
+  return range > 0.0 ? std::min(std::abs(normal.dot(mean)) / range, 1.0) : 1.0;
+}
 
 }  // namespace
 
 bool fitsPlane(const Eigen::Vector3d& mean, const Eigen::Vector3d& values, const Eigen::Vector3d& normal,
                double noise_m, double floor_m) {
-  const double range = mean.norm();
-  const double cos_incidence = range > 0.0 ? std::abs(normal.dot(mean)) / range : 1.0;
-  const double noise = noise_m * cos_incidence;
+  const double noise = noise_m * cosIncidence(mean, normal);
   return values[0] < 2.0 * (noise * noise + floor_m * floor_m);
 }
 
@@ -27,7 +31,7 @@ std::optional<double> shortRange(const Eigen::Vector3d& mean, const Eigen::Vecto
                                  double spot_rad) {
   const double range = mean.norm();
   if (spot_rad <= 0.0 || range <= 0.0) return 0.0;
-  const double cos_incidence = std::min(std::abs(normal.dot(mean)) / range, 1.0);
+  const double cos_incidence = cosIncidence(mean, normal);
   const double spread =
       spot_rad * std::sqrt(1.0 - cos_incidence * cos_incidence) / std::max(cos_incidence, 1e-6);
   if (4.0 * spread * range > kLongestSpot_m) return std::nullopt;
@@ -35,12 +39,16 @@ std::optional<double> shortRange(const Eigen::Vector3d& mean, const Eigen::Vecto
 }
 
 bool appendPatch(const Eigen::Vector3d& mean, const Eigen::Vector3d& values, const Eigen::Matrix3d& axes,
-                 double count, SurfaceElements& out) {
+                 double count, SurfaceElements& out, const ResidualPrior& prior) {
   // The second extent must stand out of the residual.
   if (values[1] < 9.0 * values[0] || !(values[1] > 0.0)) return false;
   Eigen::Vector3d normal = axes.col(0);
   if (normal.dot(mean) > 0.0) normal = -normal;
-  const double residual = std::max(values[0], 0.0) + kResidualFloor_m * kResidualFloor_m;
+  const double expected = prior.noise_m * cosIncidence(mean, normal);
+  const double freedom = std::max(count - kPlaneFreedom, 1.0);
+  const double residual =
+      (std::max(values[0], 0.0) * count + prior.points * expected * expected) / (freedom + prior.points) +
+      kResidualFloor_m * kResidualFloor_m;
   PatchShape shape;
   shape.u = axes.col(2);
   shape.v = axes.col(1);

@@ -19,9 +19,17 @@ bool fitsPlane(const Eigen::Vector3d& mean, const Eigen::Vector3d& values, const
 // told.
 std::optional<double> shortRange(const Eigen::Vector3d& mean, const Eigen::Vector3d& normal, double spot_rad);
 
-// Appends the patch of `count` points, its normal towards the scanner, its variances from its own residual.
-// False, and nothing appended, where the points lie along a line and span no plane.
+// What is known of a patch's residual before its points are seen: range noise, counting as much as so many
+// points.
+struct ResidualPrior {
+  double noise_m = 0.0;  // along the beam
+  double points = 0.0;   // 0: nothing is known
+};
+
+// Appends the patch of `count` points, more than three, its normal towards the scanner. Its variances come
+// from its own residual, free of the three degrees of freedom that the plane took, and from the prior. False,
+// and nothing appended, where the points lie along a line and span no plane.
 bool appendPatch(const Eigen::Vector3d& mean, const Eigen::Vector3d& values, const Eigen::Matrix3d& axes,
-                 double count, SurfaceElements& out);
+                 double count, SurfaceElements& out, const ResidualPrior& prior = {});
 
 }  // namespace tiltmap

@@ -17,6 +17,17 @@ constexpr int kOwnScaleSteps = 3;
 // Surfaces that fit worse than this are not the same surfaces.
 constexpr double kMostExcess_m = 0.05;
 
+// The wide search pairs at least so many.
+constexpr std::size_t kWideSample = 200;
+
+// One in so many, or more than that where too few would be left.
+std::vector<std::uint32_t> everyNth(const std::vector<std::uint32_t>& all, int n, std::size_t least) {
+  const std::size_t step = std::clamp<std::size_t>(all.size() / least, 1, static_cast<std::size_t>(n));
+  std::vector<std::uint32_t> chosen;
+  for (std::size_t i = 0; i < all.size(); i += step) chosen.push_back(all[i]);
+  return chosen;
+}
+
 double firstLossScale(const RegistrationSettings& settings) {
   switch (settings.loss) {
     case Loss::None:
@@ -98,6 +109,7 @@ Registration::Registration(PreparedScanPtr fixed, PreparedScanPtr moving, const 
     throw std::invalid_argument(status.error().what);
   if (!start_.isFinite()) throw std::invalid_argument("Registration: the start is not finite");
   moving_sample_ = sampledElements(moving_->elements, settings_);
+  wide_sample_ = everyNth(moving_sample_, settings_.wide_step, kWideSample);
   if (settings_.both_directions) fixed_sample_ = sampledElements(fixed_->elements, settings_);
   rejection_.distance_bound_m = settings_.max_distance_m;
   loss_ = firstLossScale(settings_);
@@ -128,8 +140,10 @@ StepReport Registration::step(const std::stop_token& stop) {
 }
 
 void Registration::findPairsOfStep(StepReport& report) {
-  report.rejected = findPairs(*fixed_, *moving_, pose_, fixed_sample_, moving_sample_, loss_.scale_m,
-                              settings_, rejection_, pairs_);
+  const bool wide =
+      settings_.pair_choice == PairChoice::Projective && loss_.scale_m > settings_.wide_search_above_m;
+  report.rejected = findPairs(*fixed_, *moving_, pose_, fixed_sample_, wide ? wide_sample_ : moving_sample_,
+                              loss_.scale_m, settings_, rejection_, pairs_);
   report.pairs = kept_ = report.rejected[static_cast<std::size_t>(RejectReason::None)];
   report.loss = loss_;
 }

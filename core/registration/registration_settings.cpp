@@ -50,8 +50,9 @@ void addPreparation(Table& t) {
       "Median range from which auto takes blocks: nearer, the many small patches of near surfaces outweigh "
       "all others.",
       "ours");
-  t.real("patch-size", &S::patch_size_m, "m", 0.1, 20.0, "Edge of the cubes, and longest side of a block.",
-         "ours");
+  t.real("patch-size", &S::patch_size_m, "m", 0.1, 20.0, "Edge of the cubes.", "ours");
+  t.real("patch-block", &S::patch_block_m, "m", 0.1, 20.0,
+         "Longest side of a block. Larger ones bridge the bends of the ground.", "ours");
   t.integer("patch-rows", &S::patch_rows, "cells", 1, 1000, "Height of the smallest blocks.", "ours");
   t.integer("patch-columns", &S::patch_columns, "cells", 1, 1000, "Width of the smallest blocks.", "ours");
   t.boolean(
@@ -71,6 +72,10 @@ void addPreparation(Table& t) {
          "ours", 0.001);
   t.real("patch-rough-floor", &S::patch_rough_floor_m, "mm", 0.0, 1000.0,
          "And with this floor. Too small a value drops rough ground and facades.", "ours", 0.001);
+  t.real("patch-prior", &S::patch_prior, "cells", 0.0, 1000.0,
+         "Blocks: how many cells the noise model (patch-noise) counts for beside a block's own residual, "
+         "which a few cells tell only roughly.",
+         "ours");
   t.angle("patch-spot", &S::patch_spot_rad, 0.0, 5.0,
           "Blocks: deviation of the light across the beam. The near side of a slanted spot returns "
           "more, so "
@@ -105,6 +110,8 @@ void addPairing(Table& t) {
   t.real("wide-search-above", &S::wide_search_above_m, "m", 0.0, 1000.0,
          "The projective choice looks in a three times wider field while the loss scale is above this.",
          "ours");
+  t.integer("wide-step", &S::wide_step, "", 1, 100,
+            "While it does, one patch in so many is paired: they are soon paired again.", "ours");
   t.boolean("both-directions", &S::both_directions,
             "Pair the fixed scan's elements with the moving scan's too.", "ours");
   t.real("both-directions-below", &S::both_directions_below_m, "m", 0.0, 100.0,

@@ -58,9 +58,10 @@ struct RegistrationSettings : RejectionSettings {
   int normal_neighbours = 12;         // normals of an unordered cloud, for point methods
   PatchGrouping patch_grouping = PatchGrouping::Auto;
   double patch_near_m = 4.0;  // median range from which a matrix is cut into blocks
-  double patch_size_m = 2.0;  // edge of the cubes, longest side of a block
-  int patch_rows = 3;         // size of the smallest blocks, cells
-  int patch_columns = 6;
+  double patch_size_m = 2.0;   // edge of the cubes
+  double patch_block_m = 1.0;  // longest side of a block
+  int patch_rows = 2;          // size of the smallest blocks, cells
+  int patch_columns = 4;
   bool patch_drop_edges = true;  // blocks: leave out cells at depth edges (regular matrices)
   int patch_splits = 5;          // at most so many halvings
   int patch_min_points = 5;
@@ -70,6 +71,7 @@ struct RegistrationSettings : RejectionSettings {
   double patch_floor_m = 0.002;
   double patch_rough_noise_m = 0.03;
   double patch_rough_floor_m = 0.02;
+  double patch_prior = 10.0;  // blocks: the noise model counts as much as so many of a block's cells
   double patch_spot_rad = 0.0;  // blocks: deviation of the light across the beam; 0: a thin beam
 
   // Sampling.
@@ -79,6 +81,7 @@ struct RegistrationSettings : RejectionSettings {
 
   PairChoice pair_choice = PairChoice::Projective;
   double wide_search_above_m = 0.3;      // projective: three times wider while the loss scale is above
+  int wide_step = 3;                     // and only one patch in so many is paired then
   bool both_directions = true;           // also pair the fixed scan's elements with the moving ones
   double both_directions_below_m = 0.1;  // only once the loss scale is below; loss none: always
 
@@ -91,7 +94,7 @@ struct RegistrationSettings : RejectionSettings {
   double loss_factor = 0.6;       // annealed: times this each step
   double loss_follow = 5.0;       // annealed: nor above so many median residuals
   double loss_end_m = 0.02;       // annealed: down to here, then to the data's own
-  double loss_deviations = 1.5;   // annealed, patches: in the end so many deviations of each pair's residual
+  double loss_deviations = 2.0;   // annealed, patches: in the end so many deviations of each pair's residual
   double loss_minimum_m = 0.002;  // annealed, points: in the end the median residual, but never below
 
   // End of the iteration.
