@@ -11,6 +11,7 @@
 #include "core/base/text.h"
 #include "core/scan/point_cloud.h"
 #include "core/scan/range_image.h"
+#include "tests/benchmarks/capture_run.h"
 #include "tests/benchmarks/limits.h"
 #include "tests/benchmarks/machine.h"
 #include "tests/benchmarks/operations.h"
@@ -23,7 +24,7 @@ namespace tiltmap::benchmarks {
 
 namespace {
 
-const std::vector<std::string> kBlocks = {"operations", "pairs", "real", "program", "window"};
+const std::vector<std::string> kBlocks = {"operations", "pairs", "real", "program", "capture", "window"};
 
 struct Options {
   std::vector<std::string> blocks = kBlocks;
@@ -137,6 +138,7 @@ int measure(const Options& options, std::pair<int, int> seeds) {
   }
   if (blocks.contains("program"))
     addProgramRows(table, options.program, options.scratch, options.rounds, tell);
+  if (blocks.contains("capture")) addCaptureRows(table, options.scratch, tell);
   if (blocks.contains("window"))
     kept = addWindowRows(table, TILTMAP_WINDOW_BENCHMARK, options.program,
                          std::string(options.scratch) + "-window", tell) &&

@@ -26,11 +26,18 @@ void seedInstruments(const Seed& seed) {
         "00 C4 01 00 F4 01 01 00 01 00 01 00 0A 10", "00 F5 01 00 01 00 01 00 01 00 F4 01 E0 2E 10",
         "00 BB 00 B4 00 32 00 10", "00 B2 03 11 02 05 13", "00 92 D4"})
     seed("lms2xx", ("telegram" + std::to_string(number++)).c_str(), fromHex(telegram));
-  seed("lms2xx", "numbers", "0" + fromHex("01 00 69 01"));
   seed("lms2xx", "configuration", "0\xF4" + std::string(34, '\1') + "\x10");
   seed("lms2xx", "written", "0\xF7\1" + std::string(34, '\1') + "\x10");
   seed("lms2xx", "status", "0\xB1" + std::string(152, '2') + "\x10");
+  seed("lms2xx", "numbers", "0" + fromHex("01 00 69 01"));
   seed("lms2xx", "type", "0\xBALMS291;S14;V02.10 \x10");
+  seed("mip50", "answers",
+       "\x07\r\nX0\r\nM#21    1      42800\r\n\r\nX0E#180 1 'A'\r\nP0 ASCII - Commandmode\r\nM#26 1 33 "
+       "5700\r\n");
+  seed("mip50", "commands", "0E1xGC1x2r2t0.2GV1x100Gn1xGf1xGH1xGA1x42800GR1x-6945GP1xGq1x33pGw1x33p5700G");
+  seed("mip50", "table",
+       "0clear_error = E{axis}xG\nanswer_s = 2.5\nrefusal.180 = off\nerror.3 = \\x41\\s\\r # remark\nrepeats "
+       "= 4\n");
   seed("wire", "session",
        "# tiltmap wire session 1\n# lms2xx:x\n# begun 5.0\n0.1 = 9600 8N1\n0.2 > 02 00\n0.3 < 06\n0.4 ! "
        "gone\n");

@@ -1,8 +1,7 @@
-// Any bytes as what a MIP 50 answers, as what a client sends it, and as a table of its strings.
+// Any bytes, as what a MIP 50 sends, as what it is sent, and as a table of its strings.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
-#include <string_view>
 
 #include "hardware/tilt/mip50_codec.h"
 
@@ -14,63 +13,52 @@ void require(bool held) {
   if (!held) std::abort();
 }
 
-std::vector<Mip50Answer> answersOf(const Mip50Table& table, std::string_view text, std::size_t piece) {
-  Mip50AnswerReader reader(table);
-  std::vector<Mip50Answer> answers;
-  for (; !text.empty(); text.remove_prefix(std::min(piece, text.size()))) {
-    reader.take(text.substr(0, piece), answers);
-    require(reader.pending() <= Mip50AnswerReader::kLongestLine + 1);
-  }
-  return answers;
+template <class Reader, class Item>
+std::vector<Item> itemsOf(const Mip50Table& table, std::string_view text, std::size_t piece) {
+  Reader reader(table);
+  std::vector<Item> items;
+  for (std::size_t at = 0; at < text.size(); at += piece) reader.take(text.substr(at, piece), items);
+  reader.clear();
+  return items;
 }
 
-void readAnswers(const Mip50Table& table, std::string_view text, std::size_t piece) {
-  const auto answers = answersOf(table, text, piece);
-  require(answers == answersOf(table, text, std::max<std::size_t>(text.size(), 1)));
-  for (const Mip50Answer& answer : answers) {
-    if (std::holds_alternative<Mip50Noise>(answer)) continue;
-    const std::string wire = encodeAnswer(table, answer);
-    require(answersOf(table, wire, wire.size()) == std::vector<Mip50Answer>{answer});
-  }
-}
-
-void readCommands(const Mip50Table& table, std::string_view text, std::size_t piece) {
-  Mip50CommandReader reader(table);
-  std::vector<Mip50CommandReader::Item> items;
-  for (; !text.empty(); text.remove_prefix(std::min(piece, text.size())))
-    reader.take(text.substr(0, piece), items);
-  for (const auto& item : items) {
-    const auto* command = std::get_if<Mip50Command>(&item);
-    if (!command) continue;
-    const auto again = decodeCommand(table, encodeCommand(table, *command));
-    require(again.has_value() && again->verb == command->verb && again->axis == command->axis);
-  }
+void readTable(std::string_view text) {
+  const auto table = parseMip50Table(text, "table");
+  if (!table) return;
+  const auto again = parseMip50Table(mip50TableText(*table), "table");
+  require(again && *again == *table);
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size < 1) return 0;
+  if (size == 0) return 0;
+  const Mip50Table table;
   const std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
-  const std::size_t piece = 1 + (data[0] >> 2) % 40;
-  static const Mip50Table kTable;
-  switch (data[0] & 3) {
-    case 0:
-      readAnswers(kTable, text, piece);
-      break;
-    case 1:
-      readCommands(kTable, text, piece);
-      break;
-    default:
-      if (const auto table = parseMip50Table(text, "fuzz")) {
-        const auto again = parseMip50Table(mip50TableText(*table), "fuzz");
-        require(again.has_value() && *again == *table);
-        // Whatever the strings are, nothing may be read beyond.
-        Mip50CommandReader reader(*table);
-        std::vector<Mip50CommandReader::Item> items;
-        reader.take("A1x5GP1xG", items);
-        (void)answersOf(*table, "\r\nX0\r\nM#21 1 5\r\n", piece);
-      }
+  const std::size_t piece = data[0] % 32 + 1U, whole = std::max<std::size_t>(text.size(), 1);
+
+  const auto answers = itemsOf<Mip50AnswerReader, Mip50Answer>(table, text, piece);
+  require(answers == itemsOf<Mip50AnswerReader, Mip50Answer>(table, text, whole));
+  for (const Mip50Answer& answer : answers) {
+    const std::string sent = encodeAnswer(table, answer);
+    // What a controller can say is understood as before; its columns are not made for greater numbers.
+    if (std::holds_alternative<Mip50Noise>(answer)) continue;
+    if (const auto* value = std::get_if<Mip50Value>(&answer)) {
+      const auto fits = [](std::int64_t number) { return number > -1000 && number < 1000; };
+      if (value->number < 1 || value->number > 99 || !std::ranges::all_of(value->values, fits)) continue;
+    }
+    const auto heard = itemsOf<Mip50AnswerReader, Mip50Answer>(table, sent + "\r\n", piece);
+    require(!heard.empty() && heard.front() == answer);
   }
+
+  using Item = Mip50CommandReader::Item;
+  const auto commands = itemsOf<Mip50CommandReader, Item>(table, text, piece);
+  require(commands == itemsOf<Mip50CommandReader, Item>(table, text, whole));
+  for (const Item& item : commands)
+    if (const auto* command = std::get_if<Mip50Command>(&item)) {
+      const auto second = decodeCommand(table, encodeCommand(table, *command));
+      require(second && second->verb == command->verb && second->axis == command->axis);
+    }
+  readTable(text);
   return 0;
 }
