@@ -46,7 +46,7 @@ void StepperPlot::follow() {
 
 void StepperPlot::restyle() {
   const ThemeColours& c = theme_.colours();
-  const QPalette palette = Theme::palette(theme_.isDark());
+  const QPalette palette = Theme::palette(theme_.look());
   setColours({palette.color(QPalette::Base), palette.color(QPalette::WindowText), c.muted, c.line, c.accent});
   refresh();
 }

@@ -109,15 +109,15 @@ TEST(BlockPatches, AreAsLargeAsThePlaneAllowsButNoLarger) {
   const Scan scan = room(0.005);
   RegistrationSettings s;
   const SurfaceElements usual = blockPatches(*scan.image, scan.geometry, s).elements;
-  s.patch_size_m = 0.6;
+  s.patch_block_m = 0.4;
   const SurfaceElements small = blockPatches(*scan.image, scan.geometry, s).elements;
   EXPECT_GT(small.size(), 2 * usual.size());
   std::uint32_t largest = 0;
   for (const PatchShape& shape : usual.shape) {
     largest = std::max(largest, shape.count);
-    // A uniform side of 2 m has a deviation of 2 m / 12^(1/2); the smallest block may be larger far away.
-    if (shape.count <= 18) continue;
-    EXPECT_LE(shape.extent_u_m, 2.0 / std::sqrt(12.0) + 1e-9);
+    // A uniform side of 1 m has a deviation of 1 m / 12^(1/2); the smallest block may be larger far away.
+    if (shape.count <= 8) continue;
+    EXPECT_LE(shape.extent_u_m, 1.0 / std::sqrt(12.0) + 1e-9);
   }
   EXPECT_GT(largest, 100U);
 }
@@ -242,7 +242,7 @@ TEST(PatchRaster, LooksFurtherWithALongerReachAndStopsWhenTold) {
     return ScannerGeometry().direction(tilt_deg * kDegree, azimuth_deg * kDegree);
   };
   raster.paint(at(90.0, 0.5), 1);
-  raster.paint(at(90.0, 8.0), 2);
+  raster.paint(at(90.0, 4.5), 2);
   const auto seen = [&](int reach, std::size_t most) {
     std::vector<std::uint32_t> all;
     raster.around(at(90.0, 0.5), reach, [&](std::uint32_t patch) {
@@ -272,8 +272,8 @@ TEST(PatchRaster, ClosesGapsBetweenTilesOnly) {
     return any;
   };
   EXPECT_TRUE(sees(80.0));
-  EXPECT_TRUE(sees(83.0));
-  EXPECT_FALSE(sees(88.0));
+  EXPECT_TRUE(sees(81.5));
+  EXPECT_FALSE(sees(84.0));
 }
 
 // Which of the two a scan is cut into.

@@ -99,7 +99,8 @@ TEST(RealScans, OutdoorSweepsConvergeFromTheIdentity) {
   EXPECT_NEAR(turn(a), 14.7, 0.5);
   EXPECT_NEAR(turn(b), 14.3, 0.5);
   EXPECT_NEAR(turn(c), 1.3, 0.5);
-  for (const PairResult& r : {a, b, c}) EXPECT_LT(r.rms_m, 0.03);
+  // Weighted by a loss that lets two deviations of these rough surfaces in.
+  for (const PairResult& r : {a, b, c}) EXPECT_LT(r.rms_m, 0.04);
   // Thin clouds have poor normals: even right poses leave centimetres, wrong ones much more.
   EXPECT_LT(medianOffSurface(scans[0], scans[1], a.fixed_from_moving), 0.045);
   EXPECT_LT(medianOffSurface(scans[1], scans[2], b.fixed_from_moving), 0.050);
