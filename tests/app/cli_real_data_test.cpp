@@ -105,7 +105,7 @@ TEST_F(CliRealData, GarageStationsChainAsTheyRegisterDirectly) {
   ASSERT_EQ(registered["pairs"].size(), 23U);
   for (const json& pair : registered["pairs"]) {
     EXPECT_TRUE(pair["succeeded"].get<bool>()) << pair;
-    EXPECT_LT(pair["rms_m"].get<double>(), 0.01) << pair;
+    EXPECT_LT(pair["rms_m"].get<double>(), 0.015) << pair;
   }
   for (std::size_t i = 0; i + 2 < kScans; ++i) {
     const Pose chained = poseOf(registered["pairs"][i]) * poseOf(registered["pairs"][i + 1]);

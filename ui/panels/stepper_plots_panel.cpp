@@ -23,6 +23,7 @@ StepperPlotsPanel::StepperPlotsPanel(const PanelContext& context, QWidget* paren
   tabs_->setDocumentMode(true);
   table_->setObjectName("stepper-table");
   table_->setAccessibleName("Iterations");
+  table_->setToolTip("Every iteration with its figures; choose one to go there");
   table_->setModel(rows_);
   table_->setSelectionMode(QAbstractItemView::SingleSelection);
   table_->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);

@@ -34,9 +34,9 @@ inline bool isForeign(const QWidget& widget) {
     return true;
   for (const QWidget* parent = widget.parentWidget(); parent; parent = parent->parentWidget()) {
     const std::string above = parent->metaObject()->className();
-    if (qobject_cast<const QComboBox*>(parent) || qobject_cast<const QAbstractSpinBox*>(parent) ||
-        qobject_cast<const QFileDialog*>(parent) || above == "ads::CDockAreaTitleBar" ||
-        above == "ads::CDockWidgetTab")
+    if (qobject_cast<const QTabBar*>(parent) || qobject_cast<const QComboBox*>(parent) ||
+        qobject_cast<const QAbstractSpinBox*>(parent) || qobject_cast<const QFileDialog*>(parent) ||
+        above == "ads::CDockAreaTitleBar" || above == "ads::CDockWidgetTab")
       return true;
     if (qobject_cast<const QAbstractItemView*>(parent) && !qobject_cast<const QAbstractItemView*>(&widget))
       return true;

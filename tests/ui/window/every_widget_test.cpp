@@ -102,14 +102,14 @@ TEST_F(EveryWidget, TabGoesDownAFormAndEndsAtItsButton) {
 
 TEST(CutOff, IsFound) {
   QWidget root;
-  root.resize(200, 200);
+  root.resize(600, 200);
   auto* label = new QLabel("a text that is far longer than its label", &root);
   auto* button = new QToolButton(&root);
   button->setText("a text that is far longer than its button");
   auto* outside = new QLineEdit(&root);
   label->setGeometry(0, 0, 40, 20);
   button->setGeometry(0, 30, 40, 20);
-  outside->setGeometry(150, 60, 100, 20);
+  outside->setGeometry(550, 60, 100, 20);
   root.show();
   EXPECT_EQ(cutOff(root).size(), 3U);
   label->resize(label->sizeHint());

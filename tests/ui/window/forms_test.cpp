@@ -7,6 +7,7 @@
 #include <QThread>
 #include <QTreeView>
 #include <csignal>
+#include <fstream>
 
 #include "core/products/scan_colours.h"
 #include "tests/support/program.h"
@@ -252,7 +253,12 @@ TEST_F(FormsTest, AProjectThatAnotherProcessWritesIsOpenedForReadingAndSaysWhy) 
     must(project->apply(importEdit(sampleScans(1))));
   }
   const pid_t other = startTiltmap({"gui", "shared.tiltmap"}, folder.path());
-  EXPECT_TRUE(waitUntil([this] { return !Project::open(folder / "shared.tiltmap", Access::ReadWrite); }));
+  // Looked at from outside: trying to write here would be in the other one's way.
+  EXPECT_TRUE(waitUntil([&] {
+    std::ifstream lock(folder / "shared.tiltmap-lock");
+    std::string holder;
+    return std::getline(lock, holder) && holder.starts_with("process " + std::to_string(other) + " ");
+  }));
   must(workspace().session().open(qt(folder / "shared.tiltmap")));
   settle();
   EXPECT_EQ(window->windowTitle(), "shared (read only) - Tiltmap");
