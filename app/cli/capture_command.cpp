@@ -39,8 +39,11 @@ Result<std::string> askAtTerminal(const std::string& question, const std::stop_t
 std::string summary(const nlohmann::json& report) {
   double seconds = 0.0;
   for (const auto& scan : report["seconds_per_scan"]) seconds = std::max(seconds, scan.get<double>());
-  std::string text = "captured " + std::to_string(report["stops"].get<int>()) + " stops, " +
-                     std::to_string(report["lines"].get<int>()) + " lines; " + fixedReal(seconds, 1) +
+  const auto counted = [](int number, const std::string& what) {
+    return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
+  };
+  std::string text = "captured " + counted(report["stops"].get<int>(), "stop") + ", " +
+                     counted(report["lines"].get<int>(), "line") + "; " + fixedReal(seconds, 1) +
                      " s a scan at most";
   if (report.contains("motor")) {
     const auto& motor = report["motor"];
@@ -49,11 +52,11 @@ std::string summary(const nlohmann::json& report) {
             " ms settling)";
   }
   text += "; on the disk within " + fixedReal(report["slowest_store_ms"].get<double>(), 0) + " ms";
-  if (report["spoiled"].get<int>() > 0)
-    text +=
-        "\n" + std::to_string(report["spoiled"].get<int>()) + " lines arrived damaged and were taken again";
-  if (report["recoveries"].get<int>() > 0)
-    text += "\ninstruments found again " + std::to_string(report["recoveries"].get<int>()) + " times";
+  if (const int spoiled = report["spoiled"].get<int>(); spoiled > 0)
+    text += "\ntaken again, because damaged on the wire or measured before the tilt stood: " +
+            counted(spoiled, "line");
+  if (const int found = report["recoveries"].get<int>(); found > 0)
+    text += "\ninstruments found again: " + counted(found, "time");
   return text;
 }
 

@@ -79,7 +79,7 @@ void addColour(CLI::App& app, Chosen& chosen) {
         if (words->text != "default") {
           const auto rgb = rgbOfHex(words->text);
           if (!rgb)
-            return fail("\"" + printable(words->text) + "\" is not a colour", "tiltmap colour",
+            return fail(printable(words->text) + " is not a colour", "tiltmap colour",
                         "write six hexadecimal digits, such as #ff8800, or default");
           colour =
               static_cast<std::uint32_t>(rgb->r) << 16 | static_cast<std::uint32_t>(rgb->g) << 8 | rgb->b;

@@ -27,7 +27,7 @@ Status obey(TerminalRig& rig, std::string_view line) {
     if (stop && *stop >= 0 && *stop < 1'000'000) return rig.moveTo(static_cast<int>(*stop));
   }
   if (words[0] == "fault" && words.size() == 2) return rig.fault(std::string(words[1]));
-  return fail("\"" + printable(line) + "\" is no control line", "standard input",
+  return fail(printable(line) + " is no control line", "standard input",
               "write next, stop K, or fault NAME; names: " + joined(TerminalRig::faultNames(), ", "));
 }
 

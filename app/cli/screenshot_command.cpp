@@ -35,7 +35,7 @@ Result<Size> sizeOf(const std::string& text) {
   const auto width = parts.size() == 2 ? parseInteger(parts[0]) : std::nullopt;
   const auto height = parts.size() == 2 ? parseInteger(parts[1]) : std::nullopt;
   if (!width || !height || *width < 1 || *height < 1 || *width > 16384 || *height > 16384)
-    return fail("\"" + printable(text) + "\" is not a size", "--size",
+    return fail(printable(text) + " is not a size", "--size",
                 "write width and height in pixels: 1600x900, up to 16384x16384");
   return Size{static_cast<int>(*width), static_cast<int>(*height)};
 }

@@ -37,7 +37,7 @@ Result<SitePicturePoint> pointOf(const std::string& text) {
   for (const std::string_view part : splitAt(text, ','))
     if (const auto number = parseReal(trimmed(part))) numbers.push_back(*number);
   if (numbers.size() != 4)
-    return fail("\"" + printable(text) + "\" is not a point", "--point",
+    return fail(printable(text) + " is not a point", "--point",
                 "write column and row in the picture (px), then x and y in the world (m): 120,455,3.5,-10");
   return SitePicturePoint{{numbers[0], numbers[1]}, {numbers[2], numbers[3]}};
 }

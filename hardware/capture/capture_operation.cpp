@@ -8,171 +8,17 @@
 #include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/project/live_project.h"
+#include "hardware/capture/capture_plan.h"
 #include "hardware/capture/instruments.h"
 
 namespace tiltmap {
 
 namespace {
 
-enum class Drive { None, Exp1, Exp2, Exp2Fixed, Loop, Survey };
-
-struct CaptureSettings {
-  std::string scanner, tilt;
-  Drive emulate = Drive::None;
-  int seed = 1;
-  double speed = 1.0;
-  int lines = 101;
-  double step_rad = 0.8 * kDegree;
-  double start_rad = -30.0 * kDegree;
-  int stops = 0;
-  std::string odometry;
-  bool resume = false;
-  double patience_s = 60.0;
-};
-
-ExperimentId experimentOf(Drive drive) {
-  switch (drive) {
-    case Drive::Exp1:
-      return ExperimentId::Exp1;
-    case Drive::Exp2:
-      return ExperimentId::Exp2;
-    case Drive::Loop:
-      return ExperimentId::Loop;
-    case Drive::Survey:
-      return ExperimentId::Survey;
-    default:
-      return ExperimentId::Exp2Fixed;
-  }
-}
-
-const ParameterTable<CaptureSettings>& captureTable() {
-  static const ParameterTable<CaptureSettings> table = [] {
-    ParameterTable<CaptureSettings> t("capture");
-    using S = CaptureSettings;
-    t.text("scanner", &S::scanner,
-           "The scanner: lms2xx:PORT, options behind `?` (baud, angle, resolution, unit, latency)", "ours");
-    t.text("tilt", &S::tilt,
-           "The tilt unit: mip50:PORT, options behind `?` (baud, level, min, max, profile), or manual: to "
-           "set each angle "
-           "by hand",
-           "ours");
-    t.choice("emulate", &S::emulate,
-             {{"none", Drive::None},
-              {"exp1", Drive::Exp1},
-              {"exp2", Drive::Exp2},
-              {"exp2fixed", Drive::Exp2Fixed},
-              {"loop", Drive::Loop},
-              {"survey", Drive::Survey}},
-             "Emulated instruments on a simulated drive instead of real ones; stores its odometry and truth",
-             "ours");
-    t.integer("seed", &S::seed, "", 0, 2147483647,
-              "Of the emulated drive: another seed, another site of the same kind", "ours");
-    t.real("speed", &S::speed, "", 0.0, 100.0,
-           "Emulated instruments so many times as fast as they are; 0: as fast as the machine can, in memory",
-           "ours");
-    t.integer("lines", &S::lines, "", 1, 2000, "Lines of a scan", "thesis 3.2: 101");
-    t.angle("step", &S::step_rad, 0.01, 45.0, "Tilt from line to line, upwards", "thesis 3.2: 0.8 deg");
-    t.angle("start", &S::start_rad, -180.0, 180.0, "Tilt of the first line, 0 level, positive up",
-            "ours; the thesis gives the range of 80 deg, not where it lies");
-    t.integer("stops", &S::stops, "", 0, 5000,
-              "Stops to capture, asking for the odometry between them; 0: one, or all of an emulated drive",
-              "ours");
-    t.text("odometry", &S::odometry,
-           "X,Y,HEADING of the stop in the frame of the last one: metres right and forward, degrees left",
-           "thesis 5.1");
-    t.boolean(
-        "resume", &S::resume,
-        "Go on with the capture that was interrupted: at its next line, with everything it was begun with",
-        "ours");
-    t.real("patience", &S::patience_s, "s", 1.0, 3600.0,
-           "How long an instrument that got lost is looked for before the capture ends", "ours");
-    return t;
-  }();
-  return table;
-}
-
-constexpr const char* kId = "capture";
-
-// The last capture that the project remembers, with what was left of its stops.
-const JobRecord* lastCapture(const ProjectSnapshot& snapshot) {
-  const auto found = std::find_if(snapshot.jobs().rbegin(), snapshot.jobs().rend(),
-                                  [](const JobRecord& job) { return job.operation == kId; });
-  return found == snapshot.jobs().rend() ? nullptr : &*found;
-}
-
-// What is to be done, once settings of an earlier capture have been looked up.
-struct Plan {
-  CaptureSettings settings;
-  const ScanEntry* unfinished = nullptr;  // of the snapshot
-  int stops = 1;                          // with the unfinished one
-  int first_stop = 0;                     // of an emulated drive
-};
-
-Result<Plan> resumed(const ProjectSnapshot& snapshot, const CaptureSettings& given) {
-  const JobRecord* record = lastCapture(snapshot);
-  if (!record || snapshot.scans().empty())
-    return fail("there is no capture to go on with", snapshot.path().string(), "begin one without --resume");
-  Plan plan;
-  if (Status status = captureTable().apply(record->values, plan.settings); !status)
-    return fail(status.error());
-  plan.settings.patience_s = given.patience_s;
-  plan.settings.speed = plan.settings.emulate == Drive::None ? 1.0 : given.speed;
-  plan.stops = std::max(1, plan.settings.stops);
-  const ScanEntry& last = snapshot.scans().back();
-  plan.first_stop = static_cast<int>(snapshot.scans().size()) - 1;
-  if (last.lines < last.rows) {
-    plan.unfinished = &last;
-    return plan;
-  }
-  // Interrupted between two stops.
-  plan.settings.odometry.clear();
-  ++plan.first_stop;
-  if (--plan.stops == 0)
-    return fail("the last capture was completed", snapshot.path().string(),
-                "begin another one without --resume");
-  return plan;
-}
-
-Result<Plan> planOf(const ProjectSnapshot& snapshot, const CaptureSettings& settings) {
-  if (settings.resume) return resumed(snapshot, settings);
-  Plan plan;
-  plan.settings = settings;
-  plan.stops = std::max(1, settings.stops);
-  if (settings.emulate == Drive::None) return plan;
-  if (!snapshot.scans().empty())
-    return fail("the project already has scans, of another world than the emulated drive",
-                snapshot.path().string(),
-                "capture into a new project (`tiltmap new`), or go on with --resume");
-  const auto poses = experimentPoses(experimentOf(settings.emulate),
-                                     static_cast<std::uint64_t>(settings.seed), settings.stops);
-  if (!poses) return fail(poses.error());
-  plan.stops = static_cast<int>(poses->size());
-  return plan;
-}
-
-Status checkWords(const CaptureSettings& settings, const AskOperator& ask) {
-  if (auto step = parseStep(settings.odometry); !step) return fail(step.error());
-  if (settings.emulate != Drive::None) {
-    if (!settings.scanner.empty() || !settings.tilt.empty() || !settings.odometry.empty())
-      return fail("an emulated drive brings its own instruments and odometry", "capture --emulate",
-                  "leave --scanner, --tilt and --odometry away");
-    return {};
-  }
-  if (settings.scanner.empty() || settings.tilt.empty())
-    return fail(
-        std::string("no ") + (settings.scanner.empty() ? "scanner" : "tilt unit") + " is named", "capture",
-        "give --scanner lms2xx:PORT --tilt mip50:PORT (`tiltmap devices` lists ports), or --emulate exp1");
-  if (settings.stops > 1 && !ask)
-    return fail("several stops need somebody to ask for the odometry between them", "capture --stops",
-                "capture one stop at a time");
-  RealClock unused;
-  return namedInstruments(settings.scanner, settings.tilt, unused, ask).map([](const auto&) {});
-}
-
 // One capture under way.
 class Capture {
  public:
-  Capture(const SnapshotPtr& snapshot, Plan plan, const AskOperator& ask, const JobControl& job,
+  Capture(const SnapshotPtr& snapshot, CapturePlan plan, const AskOperator& ask, const JobControl& job,
           LiveProject& live)
       : snapshot_(snapshot), plan_(std::move(plan)), ask_(ask), job_(job), live_(live) {
     if (!snapshot->scans().empty()) last_pose_ = snapshot->scans().back().odometry();
@@ -196,7 +42,7 @@ class Capture {
   Status open() {
     const CaptureSettings& s = plan_.settings;
     Instruments instruments;
-    if (s.emulate == Drive::None) {
+    if (s.emulate == CaptureDrive::None) {
       clock_ = std::make_unique<RealClock>();
       auto named = namedInstruments(s.scanner, s.tilt, *clock_, ask_);
       if (!named) return fail(named.error());
@@ -225,22 +71,29 @@ class Capture {
     if (experiment_) return experiment_->poses()[static_cast<std::size_t>(plan_.first_stop + k)].odometry;
     std::string step = k == 0 ? plan_.settings.odometry : "";
     const bool between = k > 0 || (plan_.settings.resume && !plan_.unfinished);
+    std::string trouble;
     while (between) {
-      auto answer = ask_(
-          "drive to the next stop and give X,Y,HEADING since the last one (m right, m forward, deg left)",
-          job_.stop);
+      auto answer =
+          ask_(trouble +
+                   "drive to the next stop and give X,Y,HEADING since the last one (m right, m forward, "
+                   "deg left)",
+               job_.stop);
       if (!answer) return fail(answer.error());
       step = std::string(trimmed(*answer));
-      if (auto motion = parseStep(step); motion && !step.empty()) break;
+      const auto motion = parseStep(step);
+      if (motion && !step.empty()) break;
+      trouble = motion ? "" : motion.error().what + "; ";
     }
     const auto motion = parseStep(step);
     if (!motion) return fail(motion.error());
+    if (last_pose_ && step.empty())
+      warnings_.push_back("no odometry was given: the stop is stored where the last one was");
     return last_pose_ ? *last_pose_ * *motion : *motion;
   }
 
   JobRecord record(int k) const {
     JobRecord job;
-    job.operation = kId;
+    job.operation = kCaptureId;
     job.preset = "default";
     CaptureSettings settings = plan_.settings;
     settings.stops = plan_.stops - k;  // what is left, this one included
@@ -288,6 +141,7 @@ class Capture {
       scan = plan_.unfinished->id;
       if (Status status = readUnfinished(geometry, taken); !status) return status;
     } else {
+      if (Status status = sweep_->check(geometry); !status) return status;
       const auto pose = odometry(k);
       if (!pose) return fail(pose.error());
       auto begun = begin(k, geometry, *pose);
@@ -357,7 +211,7 @@ class Capture {
   }
 
   SnapshotPtr snapshot_;
-  Plan plan_;
+  CapturePlan plan_;
   const AskOperator& ask_;
   const JobControl& job_;
   LiveProject& live_;
@@ -385,16 +239,16 @@ class CaptureOperation : public SettingsOperation<CaptureSettings> {
                                   const JobControl& control, LiveProject& live) const override {
     CaptureSettings settings;
     if (Status status = captureTable().apply(values, settings); !status) return fail(status.error());
-    auto plan = planOf(*snapshot, settings);
+    auto plan = planCapture(*snapshot, settings);
     if (!plan) return fail(plan.error());
     return Capture(snapshot, std::move(*plan), ask_, control, live).run();
   }
 
  protected:
   Status checkSettings(const ProjectSnapshot& snapshot, const CaptureSettings& settings) const override {
-    const auto plan = planOf(snapshot, settings);
+    const auto plan = planCapture(snapshot, settings);
     if (!plan) return fail(plan.error());
-    if (const Status status = checkWords(plan->settings, ask_); !status) return status;
+    if (const Status status = checkCapture(plan->settings, ask_); !status) return status;
     const ScannerGeometry geometry{.rows = plan->settings.lines,
                                    .tilt_start_rad = plan->settings.start_rad,
                                    .tilt_step_rad = plan->settings.step_rad};
@@ -411,20 +265,6 @@ class CaptureOperation : public SettingsOperation<CaptureSettings> {
 };
 
 }  // namespace
-
-Result<Pose> parseStep(const std::string& text) {
-  if (trimmed(text).empty()) return Pose();
-  const auto parts = splitAt(text, ',');
-  std::vector<double> numbers;
-  for (const std::string_view part : parts)
-    if (const auto number = parseReal(trimmed(part)); number && std::abs(*number) < 1e6)
-      numbers.push_back(*number);
-  if (parts.size() != 3 || numbers.size() != 3)
-    return fail(
-        "\"" + printable(text) + "\" is no odometry", "capture --odometry",
-        "give X,Y,HEADING: metres right, metres forward, degrees to the left, for example 0.1,5.2,-3");
-  return Pose::planar(numbers[0], numbers[1], numbers[2] * kDegree);
-}
 
 std::unique_ptr<Operation> makeCaptureOperation(AskOperator ask) {
   return std::make_unique<CaptureOperation>(std::move(ask));

@@ -14,7 +14,10 @@ constexpr double kTurnS = 0.01332;
 // The listing allows 14 ms between bytes; behind USB they come in heaps.
 constexpr double kByteGapS = 0.06;
 // Telegrams whose beginnings are remembered: long enough ago, and the mirror may have drifted.
-constexpr std::size_t kRecent = 4;
+constexpr std::size_t kRecent = 8;
+// So many parts of a period the best guess of a whole telegram may be late by, and the rhythm still be
+// counted right; the first bytes of the one under way may be late by the rest of it.
+constexpr int kLateParts = 4;
 constexpr Byte kScanAnswer = 0xB0;
 
 // One channel for two owners.
@@ -94,15 +97,16 @@ Status LmsScannerUnit::receive() {
 
 LineTimes LmsScannerUnit::timesOf(std::size_t bytes_here) {
   const Duration scan = durationOf(kTurnS * scanner_.variant().turns());
-  const Instant by_bytes = last_byte_ - channel_->line().wireTime(bytes_here);
-  began_ = std::min(began_, by_bytes);
-  // Telegrams begin in the mirror's rhythm: what an earlier one tells of it holds for this one, whose own
-  // first bytes may have been held back.
+  const Duration period = durationOf(scanner_.streamPeriod());
+  began_ = std::min(began_, last_byte_ - channel_->line().wireTime(bytes_here));
+  // Telegrams begin in an even rhythm: what earlier ones tell of it holds for this one, whose own first bytes
+  // may have been held back by an adapter or by a machine that was busy.
+  Instant began = began_;
   for (const Instant earlier : recent_) {
-    const auto scans = (by_bytes - earlier + scan / 2) / scan;
-    began_ = std::min(began_, earlier + scans * scan);
+    const auto periods = (began_ - earlier + period / kLateParts) / period;
+    began = std::min(began, earlier + periods * period);
   }
-  return {began_ - scan - durationOf(settings_.latency_s), began_};
+  return {began - scan - durationOf(settings_.latency_s), began};
 }
 
 ScannerEvent LmsScannerUnit::spoiled(const char* why) {

@@ -49,8 +49,8 @@ class LmsScannerUnit : public ScannerUnit {
   bool streaming_ = false;
   bool told_ = false;  // the telegram under way has been announced
   Instant last_byte_{};
-  Instant began_ = kNever;       // best guess for the telegram under way
-  std::vector<Instant> recent_;  // beginnings of the telegrams before
+  Instant began_ = kNever;       // by its own bytes: best guess for the telegram under way
+  std::vector<Instant> recent_;  // the same of the telegrams before
   std::size_t bad_then_ = 0;
   std::optional<ScannerEvent> held_;  // follows the one that was just told
   std::vector<std::string> warnings_;

@@ -1,8 +1,10 @@
+#include <filesystem>
+
 #include "core/geometry/pose.h"
 #include "hardware/capture/instruments.h"
 #include "hardware/capture/lms_scanner_unit.h"
 #include "hardware/tilt/mip50_unit.h"
-#include "hardware/transport/device_url.h"
+#include "hardware/transport/channel_opener.h"
 
 namespace tiltmap {
 
@@ -43,6 +45,21 @@ Result<LmsSettings> lmsSettings(const DeviceUrl& url) {
     settings.unit = *unit == "cm" ? lms2xx::Unit::Centimetre : lms2xx::Unit::Millimetre;
   }
   return settings;
+}
+
+// One opener for as long as the instruments are used, so that a record of the wire goes on when an instrument
+// is found again. A scan that is gone on with has the same words as the one before: its record gets the next
+// free number, session-2.wire, since a record is never written over.
+std::shared_ptr<ChannelOpener> openerOf(DeviceUrl url, int baud, RealClock& clock) {
+  if (const auto log = url.option("log")) {
+    const std::filesystem::path wished = *log;
+    std::error_code ignored;
+    for (int number = 2; std::filesystem::exists(url.options["log"], ignored); ++number)
+      url.options["log"] = (wished.parent_path() / (wished.stem().string() + "-" + std::to_string(number) +
+                                                    wished.extension().string()))
+                               .string();
+  }
+  return std::make_shared<ChannelOpener>(std::move(url), baud, clock);
 }
 
 struct TiltSettings {
@@ -88,8 +105,9 @@ Result<std::function<Result<std::unique_ptr<TiltUnit>>()>> tiltOpener(const Devi
   }
   auto settings = mip50Settings(url);
   if (!settings) return fail(settings.error());
-  return [url, &clock, s = *settings]() -> Result<std::unique_ptr<TiltUnit>> {
-    auto channel = openChannel(url, kTiltBaud, clock);
+  return [opener = openerOf(url, kTiltBaud, clock), &clock,
+          s = *settings]() -> Result<std::unique_ptr<TiltUnit>> {
+    auto channel = opener->open();
     if (!channel) return fail(channel.error());
     return std::make_unique<Mip50Unit>(std::move(*channel), clock, s.drive, s.table, s.axis);
   };
@@ -110,10 +128,9 @@ Result<Instruments> namedInstruments(const std::string& scanner_url, const std::
   Instruments instruments;
   instruments.clock = &clock;
   instruments.open_tilt = std::move(*opener);
-  instruments.open_scanner = [url = *scanner, s = *settings,
+  instruments.open_scanner = [channels = openerOf(*scanner, kScannerBaud, clock), s = *settings,
                               &clock]() -> Result<std::unique_ptr<ScannerUnit>> {
-    return std::make_unique<LmsScannerUnit>([url, &clock] { return openChannel(url, kScannerBaud, clock); },
-                                            clock, s);
+    return std::make_unique<LmsScannerUnit>([channels] { return channels->open(); }, clock, s);
   };
   return instruments;
 }

@@ -130,6 +130,13 @@ ScannerGeometry Sweep::geometry(int lines, double start_rad, double step_rad) co
   return geometry;
 }
 
+Status Sweep::check(const ScannerGeometry& geometry) const {
+  if (!tilt_) throw std::logic_error("Sweep::check: not prepared");
+  for (const int row : {0, geometry.rows - 1})
+    if (Status status = tilt_->checkAngle(geometry.tiltOfRow(row)); !status) return status;
+  return {};
+}
+
 std::string Sweep::instrumentNames() const {
   return (scanner_ ? scanner_->name() : "no scanner") + ", " + (tilt_ ? tilt_->name() : "no tilt unit");
 }

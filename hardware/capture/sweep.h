@@ -50,6 +50,8 @@ class Sweep {
   // Scanner and tilt found and ready: what the geometry's columns and azimuths must be is known afterwards.
   Status prepare(const JobControl& job);
   ScannerGeometry geometry(int lines, double start_rad, double step_rad) const;
+  // Whether the tilt may go to every line of it. Asked before anything is stored or moves.
+  Status check(const ScannerGeometry& geometry) const;
 
   // Takes every row of the geometry that `taken` does not have, in one sweep upwards and, for rows that were
   // spoiled, further ones. When it returns, successfully or not, every line handed to `store` has been

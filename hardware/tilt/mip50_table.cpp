@@ -179,7 +179,7 @@ Status setLine(Mip50Table& table, std::string_view name, std::string_view value,
     const auto number = parseInteger(name.substr(prefix.size()));
     const auto text = unescaped(value);
     if (!number || *number < 0 || *number > 1'000'000 || !text)
-      return fail("\"" + printable(name) + "\" does not name a number", where,
+      return fail(printable(name) + " does not name a number", where,
                   "write for example refusal.180");
     (*texts)[static_cast<int>(*number)] = *text;
     return {};
@@ -206,7 +206,7 @@ Result<Mip50Table> parseMip50Table(std::string_view text, const std::string& whe
     const std::string here = where + ", line " + std::to_string(number);
     const std::size_t equals = line.find('=');
     if (equals == std::string_view::npos)
-      return fail("\"" + printable(line) + "\" is not of the form name = value", here,
+      return fail(printable(line) + " is not of the form name = value", here,
                   "write name = value, or # before a remark");
     if (Status status =
             setLine(table, trimmed(line.substr(0, equals)), trimmed(line.substr(equals + 1)), here);

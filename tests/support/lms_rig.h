@@ -1,10 +1,13 @@
 // An LMS 2xx driver and an emulated scanner at the two ends of a wire, on a virtual clock.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "hardware/emulator/lms_emulator.h"
 #include "hardware/lms2xx/lms_scanner.h"
@@ -72,5 +75,16 @@ struct LmsRig {
   LmsEmulator emulator;
   LmsScanner scanner;
 };
+
+inline void expectUseful(const Error& error, const std::string& mentions) {
+  EXPECT_NE(error.what.find(mentions), std::string::npos) << error.what;
+  EXPECT_FALSE(error.where.empty());
+  EXPECT_GT(error.remedy.size(), 10U);
+}
+
+// Every line that came is one that was sent.
+inline void expectTrue(const LmsLine& line, const LmsRig& rig) {
+  EXPECT_TRUE(std::ranges::any_of(rig.sent, [&](const auto& sent) { return sent.measurement == line.raw; }));
+}
 
 }  // namespace tiltmap::test

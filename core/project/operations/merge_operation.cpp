@@ -42,7 +42,7 @@ Result<std::optional<Pose>> placementOf(const std::string& text) {
   }
   if (trimmed(text).empty()) return std::optional<Pose>();
   if (numbers.size() != 3)
-    return fail("\"" + printable(text) + "\" is not x, y and heading", "--at",
+    return fail(printable(text) + " is not x, y and heading", "--at",
                 "write three numbers: 12.5 3 90");
   return std::optional(Pose::planar(numbers[0], numbers[1], numbers[2] * kDegree));
 }

@@ -236,6 +236,16 @@ TEST_F(CaptureOperationTest, APortThatIsNotThereIsToldAndNothingIsStored) {
   EXPECT_TRUE(project_->snapshot()->scans().empty());
 }
 
+TEST_F(CaptureOperationTest, LinesThatTheTiltMayNotGoToAreRefusedBeforeAnythingIsStored) {
+  ParameterValues values = emulated(1, 3);
+  values["start"] = 80.0;
+  const auto outcome = run(values);
+  ASSERT_FALSE(outcome);
+  EXPECT_NE(outcome.error().what.find("limits"), std::string::npos) << outcome.error().what;
+  EXPECT_EQ(outcome.error().remedy.find("--resume"), std::string::npos);
+  EXPECT_TRUE(project_->snapshot()->scans().empty());
+}
+
 TEST(ParseStep, IsRightForwardLeft) {
   const Pose step = *parseStep(" 1, 2.5 ,90");
   EXPECT_NEAR((step.translation() - Eigen::Vector3d(1.0, 2.5, 0.0)).norm(), 0.0, 1e-12);

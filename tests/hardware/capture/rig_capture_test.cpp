@@ -84,6 +84,21 @@ TEST_F(RigCaptureTest, ASecondStopFollowsWithoutSearchingHome) {
   EXPECT_FALSE(bench_->moveTo(5));
 }
 
+// A busy machine or an adapter that hands bytes over late: when a line began is known from the ones before.
+TEST_F(RigCaptureTest, BytesInHeapsDoNotMakeTheTiltLeaveTooEarly) {
+  make(30);
+  after_ = [this](int row) {
+    if (row == 2) {
+      ASSERT_TRUE(bench_->fault("merge=0.05"));
+    }
+  };
+  const auto report = run();
+  ASSERT_TRUE(report) << report.error().what;
+  EXPECT_EQ(report->taken, 30);
+  EXPECT_LE(report->spoiled, 2);
+  expectTrueLines();
+}
+
 TEST_F(RigCaptureTest, TheSameTwiceIsTheSame) {
   make(6);
   ASSERT_TRUE(run());

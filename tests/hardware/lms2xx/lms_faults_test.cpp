@@ -17,17 +17,6 @@ using namespace lms2xx;
 using namespace std::chrono_literals;
 using test::LmsRig;
 
-void expectUseful(const Error& error, const std::string& mentions) {
-  EXPECT_NE(error.what.find(mentions), std::string::npos) << error.what;
-  EXPECT_FALSE(error.where.empty());
-  EXPECT_GT(error.remedy.size(), 10U);
-}
-
-// Every line that came is one that was sent.
-void expectTrue(const LmsLine& line, const LmsRig& rig) {
-  EXPECT_TRUE(std::ranges::any_of(rig.sent, [&](const auto& sent) { return sent.measurement == line.raw; }));
-}
-
 // With such a fault, lines are taken until `count` came; each is true.
 void takeLines(const std::string& fault, int count, double patience_s = 120.0) {
   SCOPED_TRACE(fault);
@@ -39,9 +28,9 @@ void takeLines(const std::string& fault, int count, double patience_s = 120.0) {
     const auto line = rig.scanner.scan();
     if (line) {
       ++got;
-      expectTrue(*line, rig);
+      test::expectTrue(*line, rig);
     } else {
-      expectUseful(line.error(), "scan");
+      test::expectUseful(line.error(), "scan");
       if (rig.scanner.state() == LmsState::Lost) {
         ASSERT_TRUE(rig.scanner.recover(patience_s));
       }
@@ -72,7 +61,7 @@ TEST(LmsFaults, LostAcknowledgeRefusedChecksumMissedRequestLateAnswerCutTelegram
     ASSERT_TRUE(rig.emulator.applyFault(fault));
     const auto line = rig.scanner.scan();
     ASSERT_TRUE(line) << line.error().what;
-    expectTrue(*line, rig);
+    test::expectTrue(*line, rig);
     // The promise on its time holds for a line that was asked for twice as well.
     EXPECT_LE(line->earliest_start, rig.sent.back().measured_from);
     EXPECT_EQ(line->raw, rig.sent.back().measurement);
@@ -88,7 +77,7 @@ TEST(LmsFaults, ALineThatArrivesDamagedAfterTheTiltWasFreedIsNotReplacedSilently
   const auto line = rig.scanner.scan({}, [&](Instant) { ++told; });
   ASSERT_FALSE(line);
   EXPECT_EQ(told, 1);
-  expectUseful(line.error(), "damaged");
+  test::expectUseful(line.error(), "damaged");
   EXPECT_EQ(rig.scanner.state(), LmsState::Ready)
       << "the scanner is well; the caller tilts back and asks again";
   EXPECT_TRUE(rig.scanner.scan());
@@ -109,7 +98,7 @@ TEST(LmsFaults, RefusedConfigurationIsNoSuccess) {
   rig.emulator.faults().refuse_configuration = true;
   const auto written = rig.scanner.configure([](Configuration& c) { c.setUnit(Unit::Millimetre); });
   ASSERT_FALSE(written);
-  expectUseful(written.error(), "refuses the configuration");
+  test::expectUseful(written.error(), "refuses the configuration");
   EXPECT_EQ(rig.scanner.report().configuration.unit(), Unit::Centimetre);
   EXPECT_EQ(rig.emulator.mode(), mode::kOnRequest) << "out of the installation mode";
   EXPECT_TRUE(rig.scanner.scan()) << "and it measures on";
@@ -122,7 +111,7 @@ TEST(LmsFaults, WrongPasswordIsNamed) {
   ASSERT_TRUE(rig.scanner.connect());
   const auto written = rig.scanner.configure([](Configuration& c) { c.setUnit(Unit::Millimetre); });
   ASSERT_FALSE(written);
-  expectUseful(written.error(), "password");
+  test::expectUseful(written.error(), "password");
   EXPECT_TRUE(rig.scanner.scan());
 }
 
@@ -132,7 +121,7 @@ TEST(LmsFaults, RefusedVariantSaysWhatStays) {
   rig.emulator.faults().refuse_variant = true;
   const auto set = rig.scanner.setVariant({100, 25});
   ASSERT_FALSE(set);
-  expectUseful(set.error(), "stays at 180 degrees by 0.50");
+  test::expectUseful(set.error(), "stays at 180 degrees by 0.50");
   EXPECT_FALSE(rig.scanner.setVariant({180, 25})) << "there is none such";
   EXPECT_EQ(rig.scanner.scan()->range_m.size(), 361U);
 }
@@ -162,169 +151,6 @@ TEST(LmsFaults, DazzledIsNotFar) {
   }
 }
 
-TEST(LmsFaults, PowerCutAndReturnAt9600) {
-  LmsRig rig;
-  ASSERT_TRUE(rig.scanner.connect());
-  ASSERT_TRUE(rig.scanner.scan());
-  rig.emulator.cutPower(3s);
-  const auto line = rig.scanner.scan();
-  ASSERT_FALSE(line);
-  expectUseful(line.error(), "does not answer");
-  EXPECT_EQ(rig.scanner.state(), LmsState::Lost);
-  EXPECT_FALSE(rig.scanner.scan()) << "not before it is connected anew";
-  const auto back = rig.scanner.recover(90.0);
-  ASSERT_TRUE(back) << back.error().what;
-  EXPECT_EQ(back->found_at_baud, 9600);
-  EXPECT_EQ(rig.emulator.baud(), 38400);
-  EXPECT_EQ(rig.emulator.variant(), (Variant{180, 50}));
-  EXPECT_TRUE(rig.scanner.scan());
-}
-
-TEST(LmsFaults, PowerCutInTheMiddleOfAStream) {
-  LmsSettings settings;
-  settings.baud = 9600;  // so that the power-on telegram is understood
-  settings.variant = {180, 100};
-  LmsRig rig({}, settings);
-  ASSERT_TRUE(rig.scanner.connect());
-  ASSERT_TRUE(rig.scanner.startStream());
-  ASSERT_TRUE(rig.scanner.next());
-  rig.emulator.cutPower(100ms);
-  auto line = rig.scanner.next();
-  while (line) line = rig.scanner.next();
-  expectUseful(line.error(), "silent");
-  EXPECT_EQ(rig.scanner.state(), LmsState::Lost);
-  ASSERT_TRUE(rig.scanner.recover(60.0));
-  EXPECT_EQ(rig.emulator.variant(), (Variant{180, 100})) << "set again";
-  ASSERT_TRUE(rig.scanner.startStream());
-  EXPECT_TRUE(rig.scanner.next());
-}
-
-TEST(LmsFaults, AScannerThatRestartsSaysSo) {
-  LmsEmulatorSettings emulator;
-  emulator.boot_s = 0.2;
-  LmsSettings settings;
-  settings.baud = 9600;
-  LmsRig rig(emulator, settings);
-  ASSERT_TRUE(rig.scanner.connect());
-  ASSERT_TRUE(rig.scanner.startStream());
-  ASSERT_TRUE(rig.scanner.next());
-  rig.emulator.cutPower(100ms);
-  auto line = rig.scanner.next();
-  while (line) line = rig.scanner.next();
-  expectUseful(line.error(), "power was interrupted");
-  EXPECT_TRUE(rig.scanner.recover(60.0));
-}
-
-TEST(LmsFaults, UnpluggedAndBackUnderAnotherName) {
-  LmsRig rig;
-  ASSERT_TRUE(rig.scanner.connect());
-  ASSERT_TRUE(rig.scanner.startStream());
-  ASSERT_TRUE(rig.scanner.next());
-  rig.unplug();
-  rig.plugged_in = false;
-  const auto line = rig.scanner.next();
-  ASSERT_FALSE(line);
-  expectUseful(line.error(), "gone");
-  EXPECT_EQ(rig.scanner.state(), LmsState::Lost);
-  const auto none = rig.scanner.recover(5.0);
-  ASSERT_FALSE(none);
-  expectUseful(none.error(), "no such port");
-  rig.port = "port B";
-  rig.plugged_in = true;
-  const auto back = rig.scanner.recover(30.0);
-  ASSERT_TRUE(back) << back.error().what;
-  EXPECT_EQ(back->port, "port B");
-  EXPECT_TRUE(rig.scanner.scan());
-}
-
-TEST(LmsFaults, SilentDeathIsNoticed) {
-  LmsRig rig;
-  ASSERT_TRUE(rig.scanner.connect());
-  ASSERT_TRUE(rig.scanner.startStream());
-  ASSERT_TRUE(rig.scanner.next());
-  rig.emulator.faults().silent = true;
-  const double begin = rig.seconds();
-  const auto line = rig.scanner.next();
-  ASSERT_FALSE(line);
-  expectUseful(line.error(), "silent");
-  EXPECT_LT(rig.seconds() - begin, 3.0);
-  const auto back = rig.scanner.recover(30.0);
-  ASSERT_FALSE(back);
-  expectUseful(back.error(), "tried 38400, 9600, 19200, 500000 Bd");
-  EXPECT_NE(back.error().remedy.find("RS-422"), std::string::npos);
-}
-
-TEST(LmsFaults, WrongRateInTheMiddleOfASession) {
-  for (const char* fault : {"wrong-rate=9600", "wrong-rate=19200", "wrong-rate=500000"}) {
-    SCOPED_TRACE(fault);
-    LmsRig rig;
-    ASSERT_TRUE(rig.scanner.connect());
-    ASSERT_TRUE(rig.emulator.applyFault(fault));
-    const auto line = rig.scanner.scan();
-    ASSERT_FALSE(line);
-    expectUseful(line.error(), "does not answer");
-    ASSERT_TRUE(rig.scanner.recover(60.0));
-    EXPECT_EQ(rig.emulator.baud(), 38400);
-    EXPECT_TRUE(rig.scanner.scan());
-  }
-}
-
-TEST(LmsFaults, AnAdapterThatCannotDoTheRateLeavesTheScannerWhereItIs) {
-  class Slow : public LoggedChannel {
-   public:
-    using LoggedChannel::LoggedChannel;
-    Status setLine(const LineSettings& line) override {
-      if (line.baud > 115200) return fail("the port cannot do it", name(), "use a lower rate");
-      return LoggedChannel::setLine(line);
-    }
-  };
-  const test::TemporaryFolder folder;
-  LmsSettings settings;
-  settings.baud = 500000;
-  LmsRig rig({}, settings);
-  rig.wrap = [&](std::unique_ptr<ByteChannel> channel) -> std::unique_ptr<ByteChannel> {
-    return std::make_unique<Slow>(std::move(channel), SessionLog::create(folder / "log", "x").value(),
-                                  rig.clock);
-  };
-  const auto report = rig.scanner.connect();
-  ASSERT_TRUE(report) << report.error().what;
-  EXPECT_EQ(report->baud, 9600);
-  ASSERT_EQ(report->warnings.size(), 1U);
-  EXPECT_NE(report->warnings[0].find("staying at 9600"), std::string::npos);
-  EXPECT_TRUE(rig.scanner.scan());
-}
-
-TEST(LmsFaults, AStreamCountsWhatIsLost) {
-  for (const bool indices : {false, true}) {
-    LmsSettings settings;
-    settings.indices = indices;
-    settings.baud = 500000;
-    LmsRig rig({}, settings);
-    ASSERT_TRUE(rig.scanner.connect());
-    ASSERT_TRUE(rig.emulator.applyFault("flip-bit=0.0003"));
-    rig.sent.clear();
-    ASSERT_TRUE(rig.scanner.startStream());
-    int got = 0, lost = 0;
-    std::size_t at = 0;
-    while (got < 300) {
-      const auto line = rig.scanner.next();
-      ASSERT_TRUE(line) << line.error().what;
-      // The next one sent that looks like this, and as many before it as it says.
-      std::size_t skipped = 0;
-      while (at < rig.sent.size() && rig.sent[at].measurement != line->raw) ++at, ++skipped;
-      ASSERT_LT(at, rig.sent.size());
-      ++at;
-      if (got > 0) {
-        EXPECT_EQ(line->lost_before, static_cast<int>(skipped));
-      }
-      lost += line->lost_before;
-      ++got;
-    }
-    EXPECT_GT(lost, 10) << "the fault was there";
-    EXPECT_EQ(rig.scanner.statistics().lost_lines, static_cast<std::size_t>(lost));
-  }
-}
-
 TEST(LmsFaults, AnyFaultsAtOnceGiveTrueLinesOrNone) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     LmsEmulatorSettings emulator;
@@ -340,7 +166,7 @@ TEST(LmsFaults, AnyFaultsAtOnceGiveTrueLinesOrNone) {
       }
       const auto line = rig.scanner.scan();
       if (line) {
-        expectTrue(*line, rig);
+        test::expectTrue(*line, rig);
         continue;
       }
       EXPECT_FALSE(line.error().remedy.empty());
