@@ -32,7 +32,7 @@ class NamedInstrumentsTest : public ::testing::Test {
   }
 
   test::TemporaryFolder folder_;
-  RealClock clock_{20.0};
+  RealClock clock_{2.0};
   std::unique_ptr<TerminalRig> rig_;
 };
 
