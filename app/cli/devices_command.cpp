@@ -1,8 +1,10 @@
 // tiltmap devices [URL]
+#include <algorithm>
 #include <cstdio>
 
 #include "app/cli/command.h"
 #include "core/base/text.h"
+#include "hardware/capture/instruments.h"
 #include "hardware/lms2xx/lms_scanner.h"
 #include "hardware/transport/channel_opener.h"
 #include "hardware/transport/serial_port.h"
@@ -127,16 +129,59 @@ int askScanner(Context& context, const std::string& text) {
   return kDone;
 }
 
+// A tilt controller: what it says of itself. Nothing moves.
+int askTilt(Context& context, const std::string& text) {
+  const auto url = parseDeviceUrl(text, tiltSchemes());
+  if (!url) return context.console.wrongUsage(url.error());
+  if (url->scheme != "epos")
+    return context.console.wrongUsage({"only an EPOS can be asked how it is", text,
+                                       "name a scanner or epos:PORT; `tiltmap devices` lists ports"});
+  RealClock clock;
+  auto channel = ChannelOpener(*url, 115200, clock).open();
+  if (!channel) return context.console.failed(channel.error());
+  auto unit = eposUnit(*url, std::move(*channel), clock);
+  if (!unit) return context.console.wrongUsage(unit.error());
+  context.console.note("Looking for the controller at every rate.");
+  JobControl job;
+  job.stop = context.stop;
+  const auto found = (*unit)->identify(job);
+  if (!found) return context.console.failed(found.error());
+  char status[8], error[8];
+  std::snprintf(status, sizeof status, "%04X", static_cast<unsigned>(found->status & 0xFFFF));
+  std::snprintf(error, sizeof error, "%04X", static_cast<unsigned>(found->error & 0xFFFF));
+  context.console.print("EPOS at " + url->port + "\n  protocol              " +
+                        eposProtocolName(found->protocol) + "\n  rate                  " +
+                        std::to_string(found->baud) + " Bd\n  status                " + status +
+                        "\n  last error            " + (found->error == 0 ? "none" : error) +
+                        "\n  position              " + std::to_string(found->position) + " counts\n");
+  context.console.printJson({{"port", url->port},
+                             {"type", "EPOS"},
+                             {"protocol", eposProtocolName(found->protocol)},
+                             {"baud", found->baud},
+                             {"status", status},
+                             {"error", error},
+                             {"position", found->position}});
+  return kDone;
+}
+
+int askInstrument(Context& context, const std::string& text) {
+  const std::string scheme = text.substr(0, text.find(':'));
+  const bool tilt = std::ranges::find(tiltSchemes(), scheme, &DeviceScheme::name) != tiltSchemes().end();
+  return tilt ? askTilt(context, text) : askScanner(context, text);
+}
+
 }  // namespace
 
 void addDevices(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand(
-      "devices", "List the serial ports that instruments may be plugged into, or ask a scanner how it is");
+      "devices",
+      "List the serial ports that instruments may be plugged into, or ask an instrument how it is");
   auto url = std::make_shared<std::string>();
-  command->add_option("url", *url, "A scanner to ask, as lms2xx:PORT; nothing in it is changed");
+  command->add_option("url", *url,
+                      "What to ask, as lms2xx:PORT or epos:PORT; nothing in it is changed, nothing moves");
   command->callback([&chosen, url] {
     chosen.body = [url](Context& context) {
-      return url->empty() ? listDevices(context) : askScanner(context, *url);
+      return url->empty() ? listDevices(context) : askInstrument(context, *url);
     };
   });
 }

@@ -14,7 +14,7 @@ struct EmulateWords {
   std::string experiment = "exp2fixed";
   int seed = 1, stop = 0, stops = 0;
   double speed = 1.0;
-  std::string scanner_link, tilt_link;
+  std::string scanner_link, tilt_link, tilt_model = "mip50";
 };
 
 // What a control line asks for; the error is told and nothing changes.
@@ -28,7 +28,7 @@ Status obey(TerminalRig& rig, std::string_view line) {
   }
   if (words[0] == "fault" && words.size() == 2) return rig.fault(std::string(words[1]));
   return fail(printable(line) + " is no control line", "standard input",
-              "write next, stop K, or fault NAME; names: " + joined(TerminalRig::faultNames(), ", "));
+              "write next, stop K, or fault NAME; names: " + joined(rig.faultNames(), ", "));
 }
 
 void control(Context& context, TerminalRig& rig, std::string_view line) {
@@ -66,11 +66,13 @@ int emulate(Context& context, const EmulateWords& words) {
   auto experiment = Experiment::make(*id, static_cast<std::uint64_t>(words.seed), words.stops);
   if (!experiment) return context.console.failed(experiment.error());
   RealClock clock(words.speed);
-  const RigSettings settings;
+  RigSettings settings;
+  if (Status status = settings.chooseTilt(words.tilt_model); !status)
+    return context.console.wrongUsage(status.error());
   auto rig = TerminalRig::open(clock, *experiment, settings, words.scanner_link, words.tilt_link);
   if (!rig) return context.console.failed(rig.error());
   if (Status status = (*rig)->moveTo(words.stop); !status) return context.console.failed(status.error());
-  const std::int64_t level = settings.tilt.levelCount();
+  const std::int64_t level = settings.levelCount();
   const std::string scanner = words.scanner_link.empty() ? (*rig)->scannerPort() : words.scanner_link;
   const std::string tilt = words.tilt_link.empty() ? (*rig)->tiltPort() : words.tilt_link;
   context.console.printJson({{"scanner", scanner},
@@ -81,9 +83,9 @@ int emulate(Context& context, const EmulateWords& words) {
                               {{"counts_per_ms", settings.tilt.most_speed},
                                {"counts_per_ms2", settings.tilt.most_acceleration},
                                {"settling_ms", 1000.0 * settings.tilt.settle_s}}}});
-  context.console.print("--scanner lms2xx:" + scanner + " --tilt \"mip50:" + tilt + "?level=" +
-                        std::to_string(level) + "\"\nmotor of " + shortestReal(settings.tilt.most_speed) +
-                        " counts/ms, " + shortestReal(settings.tilt.most_acceleration) + " counts/ms2, " +
+  context.console.print("--scanner lms2xx:" + scanner + " --tilt \"" + settings.tiltUrl(tilt) +
+                        "\"\nmotor of " + shortestReal(settings.tilt.most_speed) + " counts/ms, " +
+                        shortestReal(settings.tilt.most_acceleration) + " counts/ms2, " +
                         shortestReal(1000.0 * settings.tilt.settle_s) + " ms settling; Ctrl-C ends it");
   serve(context, **rig);
   return kDone;
@@ -111,8 +113,13 @@ void addEmulate(CLI::App& app, Chosen& chosen) {
       ->capture_default_str();
   command->add_option("--scanner-link", words->scanner_link, "A link to make to the scanner's terminal");
   command->add_option("--tilt-link", words->tilt_link, "A link to make to the tilt unit's terminal");
+  command
+      ->add_option("--tilt-model", words->tilt_model,
+                   "The tilt unit: " + joined(RigSettings::tiltModels(), ", "))
+      ->capture_default_str();
   command->footer(
-      "Lines on standard input: next, stop K, fault NAME. The instruments are booted, at 9600 and 19200 Bd.");
+      "Lines on standard input: next, stop K, fault NAME. The instruments are booted, at 9600 and 19200 Bd "
+      "(epos: 115200, epos-v1: 38400).");
   command->callback([words, &chosen] {
     chosen.body = [words](Context& context) -> int { return emulate(context, *words); };
   });

@@ -29,11 +29,11 @@ const ParameterTable<CaptureSettings>& captureTable() {
     using S = CaptureSettings;
     t.text("scanner", &S::scanner,
            "The scanner: lms2xx:PORT, options behind `?` (baud, angle, resolution, unit, latency)", "ours");
-    t.text("tilt", &S::tilt,
-           "The tilt unit: mip50:PORT, options behind `?` (baud, level, min, max, profile), or manual: to "
-           "set each angle "
-           "by hand",
-           "ours");
+    t.text(
+        "tilt", &S::tilt,
+        "The tilt unit: mip50:PORT or epos:PORT, options behind `?` (baud, level, min, max), or manual: to "
+        "set each angle by hand",
+        "ours");
     t.choice("emulate", &S::emulate,
              {{"none", CaptureDrive::None},
               {"exp1", CaptureDrive::Exp1},

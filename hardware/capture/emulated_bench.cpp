@@ -1,6 +1,7 @@
 #include "hardware/capture/instruments.h"
 #include "hardware/capture/lms_scanner_unit.h"
 #include "hardware/emulator/terminal_rig.h"
+#include "hardware/tilt/epos_unit.h"
 #include "hardware/tilt/mip50_unit.h"
 #include "hardware/transport/memory_channel.h"
 #include "hardware/transport/serial_port.h"
@@ -18,16 +19,28 @@ LmsSettings scannerSettings(int baud) {
 
 TiltDrive driveOf(const RigSettings& settings) {
   TiltDrive drive;
-  drive.counts_per_turn = settings.tilt.counts_per_turn;
-  drive.level_count = settings.tilt.levelCount();
+  drive.counts_per_turn = settings.countsPerTurn();
+  drive.level_count = settings.levelCount();
   return drive;
+}
+
+// The rate at which a program opens the port of the tilt unit.
+int tiltBaud(const RigSettings& settings) {
+  return settings.tilt_model == TiltModel::Epos ? settings.epos.baud : settings.tilt.baud;
+}
+
+std::unique_ptr<TiltUnit> tiltUnit(const RigSettings& settings, std::unique_ptr<ByteChannel> channel,
+                                   Clock& clock) {
+  if (settings.tilt_model == TiltModel::Epos)
+    return std::make_unique<EposUnit>(std::move(channel), clock, driveOf(settings));
+  return std::make_unique<Mip50Unit>(std::move(channel), clock, driveOf(settings));
 }
 
 class MemoryBench : public EmulatedBench {
  public:
   MemoryBench(Experiment experiment, const RigSettings& settings, int baud)
       : baud_(baud),
-        drive_(driveOf(settings)),
+        settings_(settings),
         scanner_wire_(MemoryPair::make(clock_, "emulated scanner")),
         tilt_wire_(MemoryPair::make(clock_, "emulated tilt")),
         rig_(clock_, std::move(experiment), settings, *scanner_wire_.device, *tilt_wire_.device) {
@@ -55,10 +68,11 @@ class MemoryBench : public EmulatedBench {
     };
     instruments.open_tilt = [this]() -> Result<std::unique_ptr<TiltUnit>> {
       MemoryPair pair = MemoryPair::make(clock_, "emulated tilt");
-      if (Status status = pair.host->setLine({rigBaud(), Parity::None}); !status) return fail(status.error());
+      if (Status status = pair.host->setLine({tiltBaud(settings_), Parity::None}); !status)
+        return fail(status.error());
       rig_.tilt().rewire(*pair.device);
       tilt_wire_ = std::move(pair);
-      return std::make_unique<Mip50Unit>(std::move(tilt_wire_.host), clock_, drive_);
+      return tiltUnit(settings_, std::move(tilt_wire_.host), clock_);
     };
     return instruments;
   }
@@ -71,10 +85,9 @@ class MemoryBench : public EmulatedBench {
   EmulatedRig& rig() override { return rig_; }
 
  private:
-  static int rigBaud() { return Mip50EmulatorSettings{}.baud; }
   VirtualClock clock_;
   int baud_;
-  TiltDrive drive_;
+  RigSettings settings_;
   MemoryPair scanner_wire_, tilt_wire_;
   EmulatedRig rig_;
 };
@@ -89,7 +102,7 @@ class TerminalBench : public EmulatedBench {
     auto bench = std::make_unique<TerminalBench>();
     bench->clock_ = std::move(clock);
     bench->rig_ = std::move(*rig);
-    bench->drive_ = driveOf(settings);
+    bench->settings_ = settings;
     bench->baud_ = baud;
     return bench;
   }
@@ -103,9 +116,9 @@ class TerminalBench : public EmulatedBench {
                                               scannerSettings(baud_));
     };
     instruments.open_tilt = [this]() -> Result<std::unique_ptr<TiltUnit>> {
-      auto channel = open(rig_->tiltPort(), Mip50EmulatorSettings{}.baud);
+      auto channel = open(rig_->tiltPort(), tiltBaud(settings_));
       if (!channel) return fail(channel.error());
-      return std::make_unique<Mip50Unit>(std::move(*channel), *clock_, drive_);
+      return tiltUnit(settings_, std::move(*channel), *clock_);
     };
     return instruments;
   }
@@ -126,7 +139,7 @@ class TerminalBench : public EmulatedBench {
 
   std::unique_ptr<RealClock> clock_;
   std::unique_ptr<TerminalRig> rig_;
-  TiltDrive drive_;
+  RigSettings settings_;
   int baud_ = 38400;
 };
 

@@ -6,15 +6,21 @@
 
 #include "hardware/capture/sweep.h"
 #include "hardware/emulator/rig.h"
+#include "hardware/tilt/epos_unit.h"
 #include "hardware/tilt/manual_unit.h"
+#include "hardware/transport/device_url.h"
 
 namespace tiltmap {
 
-// "lms2xx:PORT?baud=38400" and "mip50:PORT?level=312525" or "manual:". Checks the words, the table file of a
-// MIP 50 and its drive, and opens nothing yet; each opening looks for the port anew. `ask` may be empty where
-// no tilt is set by hand. The clock must outlive what is opened.
+// "lms2xx:PORT?baud=38400" and "mip50:PORT?level=312525", "epos:PORT" or "manual:". Checks the words, the
+// table file of a MIP 50 and its drive, and opens nothing yet; each opening looks for the port anew. `ask`
+// may be empty where no tilt is set by hand. The clock must outlive what is opened.
 Result<Instruments> namedInstruments(const std::string& scanner_url, const std::string& tilt_url,
                                      RealClock& clock, AskOperator ask);
+
+// An EPOS with the options of "epos:PORT?...", behind a channel that is open. The clock must outlive it.
+Result<std::unique_ptr<EposUnit>> eposUnit(const DeviceUrl& url, std::unique_ptr<ByteChannel> channel,
+                                           Clock& clock);
 
 // An emulated rig and the clock it lives on.
 class EmulatedBench {

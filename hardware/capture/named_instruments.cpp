@@ -3,6 +3,7 @@
 #include "core/geometry/pose.h"
 #include "hardware/capture/instruments.h"
 #include "hardware/capture/lms_scanner_unit.h"
+#include "hardware/tilt/epos_unit.h"
 #include "hardware/tilt/mip50_unit.h"
 #include "hardware/transport/channel_opener.h"
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr int kScannerBaud = 38400;
 constexpr int kTiltBaud = 19200;
+constexpr int kEposBaud = 115200;
 constexpr double kScannerLatencyS = 0.002;
 
 // The limits of a tilt from ?min= and ?max=, degrees.
@@ -91,6 +93,28 @@ Result<TiltSettings> mip50Settings(const DeviceUrl& url) {
   return settings;
 }
 
+Result<std::pair<TiltDrive, EposSettings>> eposSettings(const DeviceUrl& url) {
+  auto common = mip50Settings(url);
+  if (!common) return fail(common.error());
+  EposSettings settings;
+  if (const auto name = url.option("protocol")) {
+    settings.protocol = eposProtocolNamed(*name);
+    if (!settings.protocol)
+      return fail("protocol=" + *name + " is none", url.text(), "give protocol=v1, v2 or usb");
+  }
+  const auto node = url.integer("node", 1, 127), home = url.integer("home", -4, 35),
+             baud = url.integer("baud", 300, 4000000);
+  for (const auto* number : {&node, &home, &baud})
+    if (!*number) return fail(number->error());
+  const auto impulses = url.number("encoder", 1.0, 100000.0);
+  if (!impulses) return fail(impulses.error());
+  settings.node = node->value_or(settings.node);
+  settings.home_method = home->value_or(settings.home_method);
+  if (*baud) settings.bauds = {**baud};
+  if (*impulses) settings.counts_per_motor_turn = 4.0 * **impulses;
+  return std::pair{common->drive, settings};
+}
+
 Result<std::function<Result<std::unique_ptr<TiltUnit>>()>> tiltOpener(const DeviceUrl& url, RealClock& clock,
                                                                       AskOperator ask) {
   if (url.scheme == "manual") {
@@ -101,6 +125,14 @@ Result<std::function<Result<std::unique_ptr<TiltUnit>>()>> tiltOpener(const Devi
     if (Status status = readLimits(url, low, high); !status) return fail(status.error());
     return [&clock, ask, low, high]() -> Result<std::unique_ptr<TiltUnit>> {
       return std::make_unique<ManualTiltUnit>(clock, ask, low, high);
+    };
+  }
+  if (url.scheme == "epos") {
+    if (auto settings = eposSettings(url); !settings) return fail(settings.error());
+    return [url, opener = openerOf(url, kEposBaud, clock), &clock]() -> Result<std::unique_ptr<TiltUnit>> {
+      auto channel = opener->open();
+      if (!channel) return fail(channel.error());
+      return eposUnit(url, std::move(*channel), clock);
     };
   }
   auto settings = mip50Settings(url);
@@ -114,6 +146,13 @@ Result<std::function<Result<std::unique_ptr<TiltUnit>>()>> tiltOpener(const Devi
 }
 
 }  // namespace
+
+Result<std::unique_ptr<EposUnit>> eposUnit(const DeviceUrl& url, std::unique_ptr<ByteChannel> channel,
+                                           Clock& clock) {
+  const auto settings = eposSettings(url);
+  if (!settings) return fail(settings.error());
+  return std::make_unique<EposUnit>(std::move(channel), clock, settings->first, settings->second);
+}
 
 Result<Instruments> namedInstruments(const std::string& scanner_url, const std::string& tilt_url,
                                      RealClock& clock, AskOperator ask) {

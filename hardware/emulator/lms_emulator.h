@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/random.h"
+#include "hardware/emulator/emulated_instrument.h"
 #include "hardware/emulator/site_view.h"
 #include "hardware/lms2xx/framer.h"
 #include "hardware/lms2xx/unit_state.h"
@@ -57,7 +58,7 @@ struct LmsFaults {
   bool silent = false;   // does not hear and does not speak, for ever
 };
 
-class LmsEmulator : public Actor {
+class LmsEmulator : public EmulatedScanner {
  public:
   // What was sent, for comparison with what a driver made of it.
   struct SentScan {
@@ -72,9 +73,9 @@ class LmsEmulator : public Actor {
   LmsEmulator(const Clock& clock, SiteView& view, LmsEmulatorSettings settings = {});
 
   // The wire it is plugged into; nullptr: none.
-  void plug(DeviceWire* wire);
+  void plug(DeviceWire* wire) override;
   // Radians at an instant that has passed; level where there is none.
-  void setTilt(TiltAt tilt) { tilt_ = std::move(tilt); }
+  void setTilt(TiltAt tilt) override { tilt_ = std::move(tilt); }
   void onScan(std::function<void(const SentScan&)> heard) { on_scan_ = std::move(heard); }
 
   Instant nextEvent() const override;
@@ -82,8 +83,9 @@ class LmsEmulator : public Actor {
 
   LmsFaults& faults() { return faults_; }
   // "lose-byte=0.001", "dirty-window", "power-cut=2": what `fault` on a control line says; "none" ends all.
-  Status applyFault(const std::string& text);
+  Status applyFault(const std::string& text) override;
   static std::vector<std::string> faultNames();
+  std::vector<std::string> knownFaults() const override { return faultNames(); }
 
   // Off now; on again after `off`, then booting, at 9600 or the permanent rate.
   void cutPower(Duration off);

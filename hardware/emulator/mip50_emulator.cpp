@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/base/text.h"
+
 namespace tiltmap {
 
 namespace {
@@ -124,6 +126,21 @@ void Mip50Emulator::inject(Mip50Fault fault) {
     return;
   }
   faults_.insert(fault);
+}
+
+Status Mip50Emulator::applyFault(const std::string& text) {
+  const auto fault = mip50FaultNamed(text);
+  if (!fault)
+    return fail("the tilt unit has no fault `" + text + "`", text,
+                "there are " + joined(knownFaults(), ", "));
+  inject(*fault);
+  return {};
+}
+
+std::vector<std::string> Mip50Emulator::knownFaults() const {
+  std::vector<std::string> names;
+  for (const Mip50Fault fault : allMip50Faults()) names.push_back(mip50FaultName(fault));
+  return names;
 }
 
 void Mip50Emulator::garble(std::string& bytes) {

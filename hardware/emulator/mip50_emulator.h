@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/base/random.h"
+#include "hardware/emulator/emulated_instrument.h"
 #include "hardware/emulator/motor_model.h"
 #include "hardware/tilt/mip50_codec.h"
 #include "hardware/transport/byte_channel.h"
@@ -55,7 +56,7 @@ std::string mip50FaultName(Mip50Fault fault);
 std::optional<Mip50Fault> mip50FaultNamed(std::string_view name);
 std::vector<Mip50Fault> allMip50Faults();
 
-class Mip50Emulator : public Actor {
+class Mip50Emulator : public EmulatedTilt {
  public:
   // Boots at once. Wire and clock must outlive it.
   Mip50Emulator(Clock& clock, DeviceWire& wire, Mip50EmulatorSettings settings = {});
@@ -65,13 +66,15 @@ class Mip50Emulator : public Actor {
 
   void inject(Mip50Fault fault);
   // Where the scanner looks, for any instant of the last few seconds; radians, positive up.
-  double angle(Instant at) const;
+  double angle(Instant at) const override;
   // Standing, settled, since then.
-  bool still(Instant at) const;
+  bool still(Instant at) const override;
   double counts(Instant at) const { return motor_.rawPosition(at); }
   bool regulated() const { return regulated_; }
   // For another end of the wire, after a plug was pulled and put back.
-  void rewire(DeviceWire& wire);
+  void rewire(DeviceWire& wire) override;
+  Status applyFault(const std::string& text) override;
+  std::vector<std::string> knownFaults() const override;
 
  private:
   struct Outgoing {

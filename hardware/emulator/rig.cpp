@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/text.h"
+
 namespace tiltmap {
 
 namespace {
@@ -49,14 +51,64 @@ std::vector<Echo> RigView::truth(const ScannerGeometry& geometry, double tilt_ra
       noise(tilt_rad), beam_);
 }
 
+namespace {
+
+std::unique_ptr<EmulatedTilt> makeTilt(Clock& clock, DeviceWire& wire, const RigSettings& settings) {
+  if (settings.tilt_model == TiltModel::Epos)
+    return std::make_unique<EposEmulator>(clock, wire, settings.epos);
+  return std::make_unique<Mip50Emulator>(clock, wire, settings.tilt);
+}
+
+std::unique_ptr<EmulatedScanner> makeScanner(Clock& clock, SiteView& view, const RigSettings& settings) {
+  return std::make_unique<LmsEmulator>(clock, view, settings.scanner);
+}
+
+}  // namespace
+
+std::vector<std::string> RigSettings::tiltModels() {
+  return {"mip50", "epos", "epos-v1", "epos-usb"};
+}
+
+Status RigSettings::chooseTilt(std::string_view model) {
+  if (model == "mip50") {
+    tilt_model = TiltModel::Mip50;
+    return {};
+  }
+  tilt_model = TiltModel::Epos;
+  if (model == "epos") {
+    epos.protocol = EposProtocol::V2;
+  } else if (model == "epos-usb") {
+    epos.protocol = EposProtocol::V2Usb;
+  } else if (model == "epos-v1") {
+    epos.protocol = EposProtocol::V1;
+    epos.baud = 38400;
+  } else {
+    return fail("`" + std::string(model) + "` is no tilt unit that can be emulated", "emulated rig",
+                "there are " + joined(tiltModels(), ", "));
+  }
+  return {};
+}
+
+std::string RigSettings::tiltUrl(const std::string& port) const {
+  return (tilt_model == TiltModel::Epos ? "epos:" : "mip50:") + port +
+         "?level=" + std::to_string(levelCount());
+}
+
+std::int64_t RigSettings::levelCount() const {
+  return tilt_model == TiltModel::Epos ? epos.levelCount() : tilt.levelCount();
+}
+double RigSettings::countsPerTurn() const {
+  return tilt_model == TiltModel::Epos ? epos.counts_per_turn : tilt.counts_per_turn;
+}
+
 EmulatedRig::EmulatedRig(Clock& clock, Experiment experiment, RigSettings settings, DeviceWire& scanner_wire,
                          DeviceWire& tilt_wire)
     : experiment_(experiment),
       view_(std::move(experiment), settings),
-      tilt_(clock, tilt_wire, settings.tilt),
-      scanner_(clock, view_, settings.scanner) {
-  scanner_.plug(&scanner_wire);
-  scanner_.setTilt([this](Instant at) { return tilt_.angle(at); });
+      tilt_(makeTilt(clock, tilt_wire, settings)),
+      scanner_(makeScanner(clock, view_, settings)) {
+  scanner_->plug(&scanner_wire);
+  scanner_->setTilt([this](Instant at) { return tilt_->angle(at); });
 }
 
 Status EmulatedRig::moveTo(int stop) {
@@ -68,16 +120,14 @@ Status EmulatedRig::moveTo(int stop) {
 }
 
 Status EmulatedRig::fault(const std::string& text) {
-  if (const auto fault = mip50FaultNamed(text)) {
-    tilt_.inject(*fault);
-    return {};
-  }
-  return scanner_.applyFault(text);
+  const auto names = tilt_->knownFaults();
+  if (std::ranges::find(names, text) != names.end()) return tilt_->applyFault(text);
+  return scanner_->applyFault(text);
 }
 
-std::vector<std::string> EmulatedRig::faultNames() {
-  std::vector<std::string> names = LmsEmulator::faultNames();
-  for (const Mip50Fault fault : allMip50Faults()) names.push_back(mip50FaultName(fault));
+std::vector<std::string> EmulatedRig::faultNames() const {
+  std::vector<std::string> names = scanner_->knownFaults();
+  for (std::string& name : tilt_->knownFaults()) names.push_back(std::move(name));
   return names;
 }
 

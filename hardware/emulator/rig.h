@@ -1,4 +1,4 @@
-// Both instruments of the thesis' rig, emulated: the scanner on the tilt, at a stop of a simulated drive.
+// Both instruments of a rig, emulated: the scanner on the tilt, at a stop of a simulated drive.
 #pragma once
 
 #include <functional>
@@ -7,12 +7,17 @@
 #include <vector>
 
 #include "core/world/experiment.h"
+#include "hardware/emulator/epos_emulator.h"
 #include "hardware/emulator/lms_emulator.h"
 #include "hardware/emulator/mip50_emulator.h"
 
 namespace tiltmap {
 
+// What the rig consists of; the thesis had an LMS 291 on a MIP 50.
+enum class TiltModel { Mip50, Epos };
+
 struct RigSettings {
+  TiltModel tilt_model = TiltModel::Mip50;
   // The sweep that lines are expected of. A line measured at such a tilt has the noise that the simulation
   // gives that row; the scanner itself does not know rows.
   double start_rad = -0.52359877559829887308;  // -30 deg
@@ -20,6 +25,17 @@ struct RigSettings {
   LmsBeam beam;
   LmsEmulatorSettings scanner;
   Mip50EmulatorSettings tilt;
+  EposEmulatorSettings epos;
+
+  // "mip50"; "epos" (protocol V2, 115200 Bd), "epos-v1" (38400 Bd), "epos-usb". Fails for other words.
+  Status chooseTilt(std::string_view model);
+  static std::vector<std::string> tiltModels();
+  // How the tilt unit at a port is named for a capture: "mip50:PORT?level=312525".
+  std::string tiltUrl(const std::string& port) const;
+
+  // Of the tilt unit that is there.
+  std::int64_t levelCount() const;
+  double countsPerTurn() const;
 };
 
 // What the scanner sees from a stop.
@@ -55,17 +71,17 @@ class EmulatedRig {
   const Experiment& experiment() const { return experiment_; }
   // A fault of either instrument by its word, as faultNames() lists them.
   Status fault(const std::string& text);
-  static std::vector<std::string> faultNames();
+  std::vector<std::string> faultNames() const;
 
-  LmsEmulator& scanner() { return scanner_; }
-  Mip50Emulator& tilt() { return tilt_; }
+  EmulatedScanner& scanner() { return *scanner_; }
+  EmulatedTilt& tilt() { return *tilt_; }
   const RigView& view() const { return view_; }
 
  private:
   Experiment experiment_;
   RigView view_;
-  Mip50Emulator tilt_;
-  LmsEmulator scanner_;
+  std::unique_ptr<EmulatedTilt> tilt_;
+  std::unique_ptr<EmulatedScanner> scanner_;
 };
 
 }  // namespace tiltmap

@@ -62,8 +62,8 @@ Status TerminalRig::fault(const std::string& text) {
   return thread_.locked([&] { return rig_.fault(text); });
 }
 
-std::vector<std::string> TerminalRig::faultNames() {
-  std::vector<std::string> names = EmulatedRig::faultNames();
+std::vector<std::string> TerminalRig::faultNames() const {
+  std::vector<std::string> names = rig_.faultNames();
   names.insert(names.end(), {"unplug-scanner", "unplug-tilt"});
   return names;
 }

@@ -28,7 +28,7 @@ class TerminalRig {
   // A fault of either instrument, or "unplug-scanner", "unplug-tilt": the port goes and comes back at once
   // under another name (its link follows).
   Status fault(const std::string& text);
-  static std::vector<std::string> faultNames();
+  std::vector<std::string> faultNames() const;
   // For tests; look at nothing that changes while it runs.
   EmulatedRig& rig() { return rig_; }
 

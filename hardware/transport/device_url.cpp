@@ -52,6 +52,10 @@ const std::vector<DeviceScheme>& scannerSchemes() {
 const std::vector<DeviceScheme>& tiltSchemes() {
   static const std::vector<DeviceScheme> known{
       {"mip50", true, {"profile", "axis", "level", "counts", "min", "max"}, "mip50:/dev/ttyUSB1?baud=19200"},
+      {"epos",
+       true,
+       {"protocol", "node", "home", "encoder", "level", "counts", "min", "max"},
+       "epos:/dev/ttyUSB1?level=312525"},
       {"manual", false, {"min", "max"}, "manual:"}};
   return known;
 }

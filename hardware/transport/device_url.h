@@ -18,7 +18,7 @@ struct DeviceScheme {
   std::vector<std::string> options;  // beside those of every port: baud, log, speed
   std::string example;
 };
-// "lms2xx" is a scanner; "mip50" and "manual" are tilt units.
+// "lms2xx" is a scanner; "mip50", "epos" and "manual" are tilt units.
 const std::vector<DeviceScheme>& scannerSchemes();
 const std::vector<DeviceScheme>& tiltSchemes();
 

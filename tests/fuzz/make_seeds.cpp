@@ -38,6 +38,11 @@ void seedInstruments(const Seed& seed) {
   seed("mip50", "table",
        "0clear_error = E{axis}xG\nanswer_s = 2.5\nrefusal.180 = off\nerror.3 = \\x41\\s\\r # remark\nrepeats "
        "= 4\n");
+  for (const char* frame :
+       {"01 90 02 68 04 01 7A 60 00 A0 86 01 00 3E AB", "05 90 02 00 04 00 00 00 00 01 90 90 00 00 9A 5C",
+        "11 11 03 40 60 00 01 06 00 00 00 C3 71", "02 00 01 00 00 02 06 B5 20",
+        "03 90 02 10 02 41 60 00 01 64 CF", "04 90 02 60 02 01 41 90 02 60 02 01 41 60 00 22 D1"})
+    seed("epos", ("frame" + std::to_string(number++)).c_str(), fromHex(frame));
   seed("wire", "session",
        "# tiltmap wire session 1\n# lms2xx:x\n# begun 5.0\n0.1 = 9600 8N1\n0.2 > 02 00\n0.3 < 06\n0.4 ! "
        "gone\n");

@@ -246,7 +246,7 @@ TEST_F(RigCaptureTest, DeadInstrumentsEndItWithAMessage) {
 
 TEST(RigNames, EveryFaultOfTheRigIsKnownToIt) {
   auto bench = *EmulatedBench::make(*Experiment::make(ExperimentId::Exp1, 1), {}, 0.0);
-  for (const std::string& name : EmulatedRig::faultNames()) EXPECT_TRUE(bench->fault(name)) << name;
+  for (const std::string& name : bench->rig().faultNames()) EXPECT_TRUE(bench->fault(name)) << name;
   const Status unknown = bench->fault("nonsense");
   ASSERT_FALSE(unknown);
 }

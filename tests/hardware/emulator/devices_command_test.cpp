@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hardware/emulator/emulator_thread.h"
+#include "hardware/emulator/epos_emulator.h"
 #include "hardware/emulator/lms_emulator.h"
 #include "hardware/transport/pseudo_terminal.h"
 #include "support/program.h"
@@ -60,6 +61,27 @@ TEST(DevicesCommand, AsksAScannerRecordsAndReplaysIt) {
   EXPECT_EQ(gone.exit_code, 1);
   EXPECT_NE(gone.err.find("no such port"), std::string::npos) << gone.err;
   EXPECT_EQ(test::tiltmap({"devices", "lms:" + link}, folder.path()).exit_code, 2);
+}
+
+TEST(DevicesCommand, AsksATiltController) {
+  const test::TemporaryFolder folder;
+  RealClock clock;
+  const std::string link = (folder / "tilt").string();
+  auto terminal = PseudoTerminal::open(clock, link);
+  if (!terminal) GTEST_SKIP() << terminal.error().what;
+  EposEmulatorSettings settings;
+  settings.protocol = EposProtocol::V1;
+  settings.baud = 38400;
+  EposEmulator emulator(clock, **terminal, settings);
+  const EmulatorThread thread(clock, {{&emulator, terminal->get()}});
+  const auto run = test::tiltmap({"devices", "epos:" + link, "--json"}, folder.path());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json said = json::parse(run.out);
+  EXPECT_EQ(said["protocol"], "v1");
+  EXPECT_EQ(said["baud"], 38400);
+  EXPECT_EQ(said["status"], "0640");
+  EXPECT_EQ(said["position"], 0);
+  EXPECT_EQ(test::tiltmap({"devices", "mip50:" + link}, folder.path()).exit_code, 2);
 }
 
 }  // namespace
