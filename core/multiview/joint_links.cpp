@@ -12,6 +12,10 @@ namespace tiltmap {
 
 namespace {
 
+// Cells are given to patches anew once a pair of scans has moved by more.
+constexpr double kAnew_m = 0.002;
+constexpr double kAnew_rad = 2e-4;
+
 // The value that stands at a quarter of the pairs of all used links; 0 where none is used.
 double lowerQuarter(std::span<const JointLink> links, double JointLink::*value) {
   std::vector<std::pair<double, std::size_t>> values;
@@ -38,6 +42,8 @@ void takeStrongDirections(const LinearSystem& system, const Conditioning& condit
     link.b = system.b;
     return;
   }
+  link.h.setZero();
+  link.b.setZero();
   if (condition.weak == 6) return;
   // Columns of `inverse`^T are the directions' duals: h = sum over k of value_k dual_k dual_k^T.
   const Matrix6d inverse = condition.directions.inverse();
@@ -95,6 +101,22 @@ JointLink measureLink(int fixed, int moving, const Pose& fixed_from_moving,
   link.used =
       link.weak < 6 && link.overlap >= settings.min_overlap && link.agreement >= settings.min_agreement;
   return link;
+}
+
+void refineLink(JointLink& link, LinkCells& found, const Pose& fixed_from_moving,
+                std::span<const PreparedScanPtr> scans, const RegistrationSettings& settings,
+                const LossScale& loss) {
+  const PreparedScan& fixed = *scans[static_cast<std::size_t>(link.fixed)];
+  const PreparedScan& moving = *scans[static_cast<std::size_t>(link.moving)];
+  const PoseDifference moved = difference(found.fixed_from_moving, fixed_from_moving);
+  if (found.cells.empty() || moved.translation_m > kAnew_m || moved.rotation_rad > kAnew_rad)
+    found = {fixed_from_moving, cellsOnPatches(fixed, moving, fixed_from_moving, loss.scale_m, settings)};
+  if (found.cells.size() < static_cast<std::size_t>(settings.min_pairs)) return;
+  LinearSystem system;
+  lineariseCells(fixed, moving, fixed_from_moving, found.cells, loss.scale_m, settings.refine_deviations,
+                 system);
+  link.fixed_from_moving = fixed_from_moving;
+  takeStrongDirections(system, conditioningOf(system, settings.min_eigenvalue), link);
 }
 
 std::vector<JointLink> measureLinks(std::span<const std::pair<int, int>> candidates,

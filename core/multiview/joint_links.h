@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/multiview/relaxation.h"
+#include "core/registration/cell_refinement.h"
 #include "core/registration/metric.h"
 
 namespace tiltmap {
@@ -36,6 +37,19 @@ using Samples = std::vector<std::vector<std::uint32_t>>;
 JointLink measureLink(int fixed, int moving, const Pose& fixed_from_moving,
                       std::span<const PreparedScanPtr> scans, const Samples& samples,
                       const RegistrationSettings& settings, const LossScale& loss);
+
+// Which cells of one pair of scans lie on which patches, and where that was found out.
+struct LinkCells {
+  Pose fixed_from_moving;
+  std::vector<CellsOnPatch> cells;
+};
+
+// The same link told by its cells, at a relative pose not far from that of its patches (cell_refinement.h).
+// The cells are given to the patches once, and anew where the pose has moved by millimetres since. As it was
+// where too few cells lie on patches.
+void refineLink(JointLink& link, LinkCells& found, const Pose& fixed_from_moving,
+                std::span<const PreparedScanPtr> scans, const RegistrationSettings& settings,
+                const LossScale& loss);
 
 // Finds the pairs of elements of each candidate at the poses and linearises them with the loss. Shared
 // among the threads, each link in its own slot: the same bits for any number of them.

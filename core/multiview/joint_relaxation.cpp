@@ -9,6 +9,7 @@
 // narrowed to the data's own.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -41,7 +42,8 @@ constexpr int kLoopLinks = 4;          // as many links or more between its ends
 constexpr double kLinkError_m = 0.05;  // what each link between may have added to its error
 constexpr double kLinkError_rad = 0.3 * kDegree;
 constexpr double kTurnArm_m = 10.0;  // a turn counts as the shift it makes at this distance
-constexpr double kFurthest = 6.0;    // a step of the settling is lengthened by at most so much
+constexpr double kRefineBelow_m = 0.005;
+constexpr double kFurthest = 6.0;  // a step of the settling is lengthened by at most so much
 
 class JointRelaxation : public RelaxationEngine {
  public:
@@ -63,6 +65,12 @@ class JointRelaxation : public RelaxationEngine {
     if (stop.stop_requested()) return cancel(report);
     if (closing_) return close(report, stop);
     const bool settling = own_scale_steps_left_ == 0;
+    if (settling && canRefine()) {
+      tellDoing("holding the cells of " + std::to_string(links_.size()) + " pairs of scans against patches");
+      refineLinks(stop);
+      if (stop.stop_requested()) return cancel(report);
+      return settle(report, settling);
+    }
     if (!settling || candidates_.empty()) findCandidates(report);
     tellDoing("measuring " + std::to_string(candidates_.size()) + " pairs of scans");
     std::vector<JointLink> links = measureLinks(candidates_, input_.scans, samples_, poses_,
@@ -70,6 +78,7 @@ class JointRelaxation : public RelaxationEngine {
     if (stop.stop_requested()) return cancel(report);
     if (settling) keepChoice(links);
     links_ = std::move(links);
+    link_cells_.clear();
     settle(report, settling);
   }
 
@@ -154,6 +163,24 @@ class JointRelaxation : public RelaxationEngine {
     const bool at_rest = solved.translation_m < settings_.registration.loss_minimum_m &&
                          solved.rotation_rad * kTurnArm_m < settings_.registration.loss_minimum_m;
     closing_ = misfits > 0 && !at_rest && rounds_ < kClosingRounds;
+  }
+
+  // Once the poses move by millimetres only; the choice of links stands then.
+  bool canRefine() const {
+    const RegistrationSettings& r = settings_.registration;
+    return r.refine && loss_.isOwn() && !links_.empty() && last_moved_m_ < kRefineBelow_m;
+  }
+
+  // A link that was not reached when asked to stop is as it was; the step is not taken then.
+  void refineLinks(const std::stop_token& stop) {
+    link_cells_.resize(links_.size());
+    std::vector<JointLink> links = links_;
+    parallelFor(links.size(), threads_, [&](std::size_t k) {
+      if (!links[k].used || stop.stop_requested()) return;
+      refineLink(links[k], link_cells_[k], pose(links[k].fixed).inverse() * pose(links[k].moving),
+                 input_.scans, settings_.registration, loss_);
+    });
+    if (!stop.stop_requested()) links_ = std::move(links);
   }
 
   // How well surfaces fit is a matter of the site and the scanner. Neighbours in time have been registered,
@@ -324,6 +351,7 @@ class JointRelaxation : public RelaxationEngine {
     if (!solve(terms(), solved, true)) return end(report);
     report.events.push_back(solved);
     ++iterations_;
+    last_moved_m_ = solved.translation_m;
     updateScale(solved.translation_m);
     const RegistrationSettings& r = settings_.registration;
     const bool tiny = solved.translation_m < r.min_translation_m && solved.rotation_rad < r.min_rotation_rad;
@@ -440,8 +468,10 @@ class JointRelaxation : public RelaxationEngine {
   LossScale loss_;
   double widest_m_ = 0.0;  // of the loss scales of this data
   double last_rms_m_ = 0.0;
-  std::vector<Vector6d> last_motions_;  // as solved, before they were lengthened
-  double length_ = 1.0;                 // of the last step
+  double last_moved_m_ = std::numeric_limits<double>::infinity();  // at most, in the last step
+  std::vector<LinkCells> link_cells_;                              // of links_, once they are refined
+  std::vector<Vector6d> last_motions_;                             // as solved, before they were lengthened
+  double length_ = 1.0;                                            // of the last step
   int own_scale_steps_left_ = 0;
   int iterations_ = 0;
 };

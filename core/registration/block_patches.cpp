@@ -18,7 +18,7 @@ constexpr int kLargestLevel = 5;  // 32 x 32 tiles
 class Pyramid {
  public:
   Pyramid(MomentGrid tiles, const RegistrationSettings& settings, BlockPatches& out)
-      : settings_(settings), out_(out) {
+      : settings_(settings), spot_rad_(out.spot_rad), out_(out) {
     levels_.push_back(std::move(tiles));
     while (static_cast<int>(levels_.size()) <= kLargestLevel &&
            (levels_.back().rows > 1 || levels_.back().columns > 1))
@@ -51,7 +51,7 @@ class Pyramid {
     if (!planar &&
         !fitsPlane(mean, values, axes.col(0), settings_.patch_rough_noise_m, settings_.patch_rough_floor_m))
       return;
-    const auto short_m = shortRange(mean, axes.col(0), settings_.patch_spot_rad);
+    const auto short_m = shortRange(mean, axes.col(0), spot_rad_);
     if (!short_m) return;
     const auto patch = static_cast<std::uint32_t>(out_.elements.size());
     const Eigen::Vector3d place = mean + *short_m * mean.normalized();
@@ -75,6 +75,7 @@ class Pyramid {
   }
 
   const RegistrationSettings& settings_;
+  double spot_rad_;
   BlockPatches& out_;
   std::vector<MomentGrid> levels_;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver_;
@@ -85,8 +86,11 @@ class Pyramid {
 BlockPatches blockPatches(const RangeImage& image, const ScannerGeometry& geometry,
                           const RegistrationSettings& settings) {
   BlockPatches out;
+  out.spot_rad = image.isRegular() ? settings.patch_spot_rad : 0.0;
+  if (settings.refine) out.cells.reserve(image.validCells());
   Pyramid pyramid(
-      tileMoments(image, geometry, settings.patch_rows, settings.patch_columns, settings.patch_drop_edges),
+      tileMoments(image, geometry, settings.patch_rows, settings.patch_columns, settings.patch_drop_edges,
+                  settings.refine ? &out.cells : nullptr, settings.refine_whole_m),
       settings, out);
   pyramid.descend();
   out.raster.closeGaps();

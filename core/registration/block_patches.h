@@ -1,6 +1,7 @@
 // Plane patches of a range matrix: the largest blocks of cells that are planar.
 #pragma once
 
+#include "core/registration/cell_samples.h"
 #include "core/registration/patch_raster.h"
 #include "core/registration/registration_settings.h"
 #include "core/registration/surface_elements.h"
@@ -11,6 +12,8 @@ namespace tiltmap {
 struct BlockPatches {
   SurfaceElements elements;
   PatchRaster raster;
+  double spot_rad = 0.0;  // of the light that the patches were set back by
+  CellSamples cells;      // that took part, for refinement; empty where that is not asked for
 };
 
 // Tiles of patch_rows x patch_columns cells are added up in twos to ever larger blocks (a pyramid of

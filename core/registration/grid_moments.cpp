@@ -32,6 +32,8 @@ struct LinePlane {
     ahead = tilted(geometry.mounting * Eigen::Vector3d::UnitY());
   }
 
+  Eigen::Vector3d point(double c, double s) const { return arm + c * across + s * ahead; }
+
   void addTo(Moments& m, const LineSums& k) const {
     const Eigen::Vector3d first = k.c * across + k.s * ahead;
     const Eigen::Vector3d a = k.cc * across + k.cs * ahead;
@@ -86,20 +88,29 @@ MomentGrid emptyGrid(const RangeImage& image, int tile_rows, int tile_columns) {
   return grid;
 }
 
+// Whether the cells of a tile lie so near each other that their mean stands for them.
+bool isOne(const Moments& m, double whole_below_m) {
+  const double square = (m.x * m.x + m.y * m.y + m.z * m.z) / m.n;
+  return m.xx + m.yy + m.zz - square < m.n * whole_below_m * whole_below_m;
+}
+
 // A scanner's regular matrix: a line at a time, without making points.
 class RegularTiles {
  public:
-  RegularTiles(const RangeImage& image, const ScannerGeometry& geometry, bool drop_edges)
+  RegularTiles(const RangeImage& image, const ScannerGeometry& geometry, int tile_rows, int tile_columns,
+               bool drop_edges)
       : image_(image),
         geometry_(geometry),
+        tile_rows_(tile_rows),
+        tile_columns_(static_cast<std::size_t>(tile_columns)),
         drop_edges_(drop_edges),
         inverse_(image, geometry),
         columns_(static_cast<std::size_t>(image.columns())),
         cosine_(columns_),
         sine_(columns_),
-        across_(columns_),
-        ahead_(columns_),
-        used_(columns_),
+        across_(columns_ * static_cast<std::size_t>(tile_rows)),
+        ahead_(across_.size()),
+        used_(across_.size()),
         two_cos_azimuth_(static_cast<float>(2.0 * std::cos(geometry.azimuth_step_rad))) {
     for (std::size_t k = 0; k < columns_; ++k) {
       const double a = geometry.azimuthOfColumn(static_cast<int>(k));
@@ -110,23 +121,27 @@ class RegularTiles {
     two_cos_tilt_ = static_cast<float>(2.0 * std::cos(step));
   }
 
-  void addLine(int row, int tile_columns, Moments* tiles) {
-    chooseCells(row);
+  // Row after row, from the first.
+  void addLine(int row, Moments* tiles) {
+    if (row % tile_rows_ == 0) planes_.clear();
+    const std::size_t begin = planes_.size() * columns_;
+    float* used = used_.data() + begin;
+    double *across = across_.data() + begin, *ahead = ahead_.data() + begin;
+    chooseCells(row, used);
+    const float* ranges = image_.data().range_m.data() + image_.index(row, 0);
     for (std::size_t k = 0; k < columns_; ++k) {
       const double range =
-          static_cast<double>(used_[k]) *
-          (static_cast<double>(image_.data().range_m[image_.index(row, 0) + k]) + geometry_.range_offset_m);
-      across_[k] = range * cosine_[k];
-      ahead_[k] = range * sine_[k];
+          static_cast<double>(used[k]) * (static_cast<double>(ranges[k]) + geometry_.range_offset_m);
+      across[k] = range * cosine_[k];
+      ahead[k] = range * sine_[k];
     }
-    const LinePlane plane(geometry_, image_.lineTilt(row));
-    const auto width = static_cast<std::size_t>(tile_columns);
-    for (std::size_t first = 0; first < columns_; first += width, ++tiles) {
-      const std::size_t last = std::min(columns_, first + width);
+    const LinePlane& plane = planes_.emplace_back(geometry_, image_.lineTilt(row));
+    for (std::size_t first = 0; first < columns_; first += tile_columns_, ++tiles) {
+      const std::size_t last = std::min(columns_, first + tile_columns_);
       LineSums sums;
       for (std::size_t k = first; k < last; ++k) {
-        const double c = across_[k], s = ahead_[k];
-        sums.n += static_cast<double>(used_[k]);
+        const double c = across[k], s = ahead[k];
+        sums.n += static_cast<double>(used[k]);
         sums.c += c, sums.s += s;
         sums.cc += c * c, sums.cs += c * s, sums.ss += s * s;
       }
@@ -134,33 +149,51 @@ class RegularTiles {
     }
   }
 
+  // Of the tiles whose lines came last.
+  void sample(const Moments* tiles, double whole_below_m, CellSamples& samples) const {
+    for (std::size_t first = 0; first < columns_; first += tile_columns_, ++tiles) {
+      if (!(tiles->n > 0.0)) continue;
+      if (isOne(*tiles, whole_below_m)) {
+        samples.add(tiles->mean(), tiles->n);
+        continue;
+      }
+      const std::size_t last = std::min(columns_, first + tile_columns_);
+      for (std::size_t line = 0; line < planes_.size(); ++line)
+        for (std::size_t k = line * columns_ + first; k < line * columns_ + last; ++k)
+          if (used_[k] > 0.0F) samples.add(planes_[line].point(across_[k], ahead_[k]), 1.0);
+    }
+  }
+
  private:
   // 1 where a cell takes part, 0 where not.
-  void chooseCells(int row) {
+  void chooseCells(int row, float* used) {
     const float* here = inverse_.row(row);
     const float* before = inverse_.row(row - 1);
     const float* after = inverse_.row(row + 1);
     for (std::size_t k = 0; k < columns_; ++k) {
       const float q = here[k];
       if (!drop_edges_) {
-        used_[k] = q > 0.0F ? 1.0F : 0.0F;
+        used[k] = q > 0.0F ? 1.0F : 0.0F;
         continue;
       }
       const float* at = here + k;
       const float bend_along = std::abs(at[-1] + at[1] - two_cos_azimuth_ * q);
       const float bend_across = std::abs(before[k] + after[k] - two_cos_tilt_ * q);
       // |bend| r^2 below the bound; a cell without a point fails on 0 < 0.
-      used_[k] = std::max(bend_along, bend_across) < kBend_m * q * q ? 1.0F : 0.0F;
+      used[k] = std::max(bend_along, bend_across) < kBend_m * q * q ? 1.0F : 0.0F;
     }
   }
 
   const RangeImage& image_;
   const ScannerGeometry& geometry_;
+  int tile_rows_;
+  std::size_t tile_columns_;
   bool drop_edges_;
   InverseRanges inverse_;
   std::size_t columns_;
   std::vector<double> cosine_, sine_, across_, ahead_;
   std::vector<float> used_;
+  std::vector<LinePlane> planes_;  // of the lines since the tiles began
   float two_cos_azimuth_, two_cos_tilt_ = 2.0F;
 };
 
@@ -187,24 +220,36 @@ Eigen::Matrix3d Moments::covariance() const {
 }
 
 MomentGrid tileMoments(const RangeImage& image, const ScannerGeometry& geometry, int tile_rows,
-                       int tile_columns, bool drop_edges) {
+                       int tile_columns, bool drop_edges, CellSamples* samples, double whole_below_m) {
   if (tile_rows < 1 || tile_columns < 1) throw std::invalid_argument("tileMoments: a tile has no cells");
   MomentGrid grid = emptyGrid(image, tile_rows, tile_columns);
   if (image.isRegular()) {
-    RegularTiles lines(image, geometry, drop_edges);
-    for (int row = 0; row < image.rows(); ++row)
-      lines.addLine(row, tile_columns,
-                    grid.tile.data() + static_cast<std::ptrdiff_t>(row / tile_rows) * grid.columns);
+    RegularTiles lines(image, geometry, tile_rows, tile_columns, drop_edges);
+    for (int row = 0; row < image.rows(); ++row) {
+      Moments* tiles = grid.tile.data() + static_cast<std::ptrdiff_t>(row / tile_rows) * grid.columns;
+      lines.addLine(row, tiles);
+      if (samples && ((row + 1) % tile_rows == 0 || row + 1 == image.rows()))
+        lines.sample(tiles, whole_below_m, *samples);
+    }
     return grid;
   }
+  const auto tileOf = [&](int row, int column) -> Moments& {
+    return grid.tile[static_cast<std::size_t>(row / tile_rows * grid.columns + column / tile_columns)];
+  };
   for (int row = 0; row < image.rows(); ++row)
     for (int column = 0; column < image.columns(); ++column) {
       if (!image.hasPoint(row, column)) continue;
       const Eigen::Vector3d p = cellPoint(image, geometry, row, column);
-      grid.tile[static_cast<std::size_t>(row / tile_rows * grid.columns + column / tile_columns)] +=
-          {1.0,           p.x(),         p.y(),         p.z(),         p.x() * p.x(),
-           p.x() * p.y(), p.x() * p.z(), p.y() * p.y(), p.y() * p.z(), p.z() * p.z()};
+      tileOf(row, column) += {1.0,           p.x(),         p.y(),         p.z(),         p.x() * p.x(),
+                              p.x() * p.y(), p.x() * p.z(), p.y() * p.y(), p.y() * p.z(), p.z() * p.z()};
     }
+  if (!samples) return grid;
+  for (const Moments& tile : grid.tile)
+    if (tile.n > 0.0 && isOne(tile, whole_below_m)) samples->add(tile.mean(), tile.n);
+  for (int row = 0; row < image.rows(); ++row)
+    for (int column = 0; column < image.columns(); ++column)
+      if (image.hasPoint(row, column) && !isOne(tileOf(row, column), whole_below_m))
+        samples->add(cellPoint(image, geometry, row, column), 1.0);
   return grid;
 }
 

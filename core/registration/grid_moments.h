@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "core/registration/cell_samples.h"
 #include "core/scan/range_image.h"
 #include "core/scan/scanner_geometry.h"
 
@@ -37,8 +38,12 @@ struct MomentGrid {
 // Moments of the cells of each tile that hold a point. With `drop_edges`, cells of a regular matrix take part
 // only where 1/range is linear along the line and across the lines, as it is on any plane at any incidence
 // (up to the step's cosine); at edges, mixed pixels and leaves it bends. The bound is 0.2 m of depth.
+//
+// With `samples`, the same cells are also appended there: those of a tile that is smaller than
+// `whole_below_m` (the root of its covariance's trace) as one, others one by one.
 MomentGrid tileMoments(const RangeImage& image, const ScannerGeometry& geometry, int tile_rows,
-                       int tile_columns, bool drop_edges);
+                       int tile_columns, bool drop_edges, CellSamples* samples = nullptr,
+                       double whole_below_m = 0.0);
 
 // 2 x 2 tiles added up.
 MomentGrid halved(const MomentGrid& fine);

@@ -13,6 +13,7 @@ constexpr double kMedianSquare = 0.4549364;   // the same for one in two
 constexpr double kFittingSquare = 9.0;        // three deviations
 constexpr int kRounds = 5;                    // the ratio is within a percent of 1 after three
 constexpr int kTrimmedRounds = 3;
+constexpr double kEnough = 0.02;
 
 // The value that one in `share` lies below; reorders.
 double quantileOf(std::vector<double>& values, std::size_t share) {
@@ -38,12 +39,15 @@ double excessDeviation(const std::vector<double>& residuals_m, const std::vector
   double excess = 0.0;  // m^2
   double typical = medianOf(variances_m2);
   std::vector<double> squares, variances;
-  const auto take = [&](double ratio) { excess = std::max(0.0, (typical + excess) * ratio - typical); };
+  // Whether there is more to come.
+  const auto take = [&](double ratio) {
+    excess = std::max(0.0, (typical + excess) * ratio - typical);
+    return excess > 0.0 && std::abs(ratio - 1.0) > kEnough;
+  };
   for (int round = 0; round < kRounds; ++round) {
     squares.clear();
     for (std::size_t i = 0; i < residuals_m.size(); ++i) squares.push_back(square(i, excess));
-    take(quantileOf(squares, 4) / kQuarterSquare);
-    if (excess == 0.0) break;
+    if (!take(quantileOf(squares, 4) / kQuarterSquare)) break;
   }
   for (int round = 0; round < kTrimmedRounds; ++round) {
     squares.clear(), variances.clear();
@@ -53,7 +57,7 @@ double excessDeviation(const std::vector<double>& residuals_m, const std::vector
     }
     if (squares.empty()) break;
     typical = quantileOf(variances, 2);
-    take(quantileOf(squares, 2) / kMedianSquare);
+    if (!take(quantileOf(squares, 2) / kMedianSquare)) break;
   }
   return std::sqrt(excess);
 }

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 
 #include "core/registration/closed_form_motion.h"
+#include "core/registration/normal_equations.h"
 
 namespace tiltmap {
 
@@ -20,32 +21,6 @@ constexpr double kFittingPoint_m =
 struct Placed {
   Eigen::Vector3d q, p;    // fixed, moving
   Eigen::Vector3d nq, np;  // normals
-};
-
-// The upper triangle of sum w J J^T and sum w J r, J = (a, n).
-struct Accumulator {
-  double h[21] = {};
-  double b[6] = {};
-
-  void add(const Eigen::Vector3d& a, const Eigen::Vector3d& n, double w, double r) {
-    const double j[6] = {a.x(), a.y(), a.z(), n.x(), n.y(), n.z()};
-    int k = 0;
-    for (int row = 0; row < 6; ++row) {
-      const double wj = w * j[row];
-      for (int column = row; column < 6; ++column) h[k++] += wj * j[column];
-      b[row] += wj * r;
-    }
-  }
-  void addTo(LinearSystem& system) const {
-    int k = 0;
-    for (int row = 0; row < 6; ++row) {
-      for (int column = row; column < 6; ++column, ++k) {
-        system.h(row, column) += h[k];
-        if (row != column) system.h(column, row) += h[k];
-      }
-      system.b[row] += b[row];
-    }
-  }
 };
 
 // A residual along one normal: value, Jacobian (rotation part; the translation part is the normal), variance.
@@ -105,7 +80,7 @@ void forKept(const SurfaceElements& fixed, const SurfaceElements& moving, const 
 
 struct Sums {
   LinearSystem& system;
-  Accumulator accumulator;
+  NormalEquations accumulator;
   Residuals* residuals = nullptr;
 
   // Returns the loss's weight of a squared residual, and counts the pair.

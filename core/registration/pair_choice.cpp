@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::uint32_t kNobody = 0xffffffffU;
 constexpr std::size_t kShootingCandidates = 12;
-constexpr double kSamePatch_m =
-    0.05;  // a patch seen in a direction and this near is not compared with others
+constexpr float kSamePatch_m =
+    0.05F;  // a patch seen in a direction and this near is not compared with others
 
 // One element of `from`, in the frame of `to`.
 struct Query {
@@ -77,25 +77,26 @@ std::uint32_t projective(const PreparedScan& to, const DirectionIndex& direction
 }
 
 // How far a place is from a patch as a disc, squared: across its plane, and beyond its edge along it.
-double discDistance(const Eigen::Vector3d& d, const Eigen::Vector3d& normal, const PatchShape& shape) {
-  constexpr double kEdge = 1.7;  // a uniform patch ends at 3^(1/2) deviations
-  const double across = d.dot(normal);
-  const double u = std::max(0.0, std::abs(d.dot(shape.u)) - kEdge * shape.extent_u_m);
-  const double v = std::max(0.0, std::abs(d.dot(shape.v)) - kEdge * shape.extent_v_m);
+float discDistance(const PatchDisc& disc, const Eigen::Vector3f& p) {
+  const float dx = p.x() - disc.x, dy = p.y() - disc.y, dz = p.z() - disc.z;
+  const float across = dx * disc.nx + dy * disc.ny + dz * disc.nz;
+  const float u = std::max(0.0F, std::abs(dx * disc.ux + dy * disc.uy + dz * disc.uz) - disc.reach_u);
+  const float v = std::max(0.0F, std::abs(dx * disc.vx + dy * disc.vy + dz * disc.vz) - disc.reach_v);
   return across * across + u * u + v * v;
 }
 
 // The same among the patches of a matrix, which are of very different sizes.
-std::uint32_t seenPatch(const PreparedScan& to, const Query& query, int reach, double min_cos,
-                        double enough_square) {
+std::uint32_t seenPatch(const PreparedScan& to, const Query& query, int reach, float min_cos,
+                        float enough_square) {
+  const Eigen::Vector3f position = query.position.cast<float>(), normal = query.normal.cast<float>();
+  const PatchDisc* discs = to.discs.data();
   std::uint32_t best = kNobody, any = kNobody;
-  double best_square = std::numeric_limits<double>::infinity();
+  float best_square = std::numeric_limits<float>::infinity();
   to.raster->around(query.position, reach, [&](std::uint32_t patch) {
     if (any == kNobody) any = patch;
-    const Eigen::Vector3d& normal = to.elements.normal[patch];
-    if (normal.dot(query.normal) < min_cos) return true;
-    const double square =
-        discDistance(query.position - to.elements.position[patch], normal, to.elements.shape[patch]);
+    const PatchDisc& disc = discs[patch];
+    if (disc.nx * normal.x() + disc.ny * normal.y() + disc.nz * normal.z() < min_cos) return true;
+    const float square = discDistance(disc, position);
     if (square < best_square) best_square = square, best = patch;
     return best_square > enough_square;
   });
@@ -117,7 +118,7 @@ void choosePairs(const PreparedScan& from, const PreparedScan& to, const Pose& t
   const Eigen::Vector3d shift = to_from_from.translation();
   const double min_cos = std::cos(settings.max_angle_rad);
   std::vector<KdTree::Neighbour> scratch;
-  const double enough_square = wide ? 0.0 : kSamePatch_m * kSamePatch_m;
+  const float enough_square = wide ? 0.0F : kSamePatch_m * kSamePatch_m;
   for (const std::uint32_t index : sample) {
     Query query{rotation * from.elements.position[index] + shift, rotation * from.elements.normal[index],
                 false};
@@ -135,7 +136,7 @@ void choosePairs(const PreparedScan& from, const PreparedScan& to, const Pose& t
           partner = normalShooting(to, query, scratch);
           break;
         case PairChoice::Projective:
-          partner = to.raster ? seenPatch(to, query, wide ? 3 : 1, min_cos, enough_square)
+          partner = to.raster ? seenPatch(to, query, wide ? 3 : 1, static_cast<float>(min_cos), enough_square)
                               : projective(to, *directions, query, min_cos);
           break;
       }

@@ -92,6 +92,32 @@ bool takesBlocks(const RangeImage& image, const RegistrationSettings& settings) 
   return 2 * near < points;
 }
 
+std::vector<PatchDisc> discsOf(const SurfaceElements& patches) {
+  constexpr double kEdge = 1.7;  // a uniform patch ends at 3^(1/2) deviations
+  std::vector<PatchDisc> discs(patches.size());
+  for (std::size_t i = 0; i < discs.size(); ++i) {
+    const Eigen::Vector3f p = patches.position[i].cast<float>(), n = patches.normal[i].cast<float>();
+    const PatchShape& shape = patches.shape[i];
+    const Eigen::Vector3f u = shape.u.cast<float>(), v = shape.v.cast<float>();
+    discs[i] = {p.x(),
+                p.y(),
+                p.z(),
+                n.x(),
+                n.y(),
+                n.z(),
+                u.x(),
+                u.y(),
+                u.z(),
+                v.x(),
+                v.y(),
+                v.z(),
+                static_cast<float>(kEdge * shape.extent_u_m),
+                static_cast<float>(kEdge * shape.extent_v_m),
+                static_cast<float>(shape.offset_variance_m2)};
+  }
+  return discs;
+}
+
 // Elements and what they are found by.
 void derive(const RangeImage& image, const ScannerGeometry& geometry, const RegistrationSettings& settings,
             PreparedScan& prepared) {
@@ -99,7 +125,12 @@ void derive(const RangeImage& image, const ScannerGeometry& geometry, const Regi
   if (takesBlocks(image, settings)) {
     BlockPatches blocks = blockPatches(image, geometry, settings);
     prepared.elements = std::move(blocks.elements);
-    if (projective) prepared.raster = std::move(blocks.raster);
+    if (projective) {
+      prepared.raster = std::move(blocks.raster);
+      prepared.discs = discsOf(prepared.elements);
+      prepared.cells = std::move(blocks.cells);
+      prepared.spot_rad = blocks.spot_rad;
+    }
   } else {
     const std::vector<Eigen::Vector3d> points = cellPoints(image, geometry);
     prepared.elements = settings.reduction == Reduction::Patches ? cubePatches(image, points, settings)

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/registration/cell_samples.h"
 #include "core/registration/direction_index.h"
 #include "core/registration/patch_raster.h"
 #include "core/registration/registration_settings.h"
@@ -14,6 +15,14 @@
 #include "core/scan/range_image.h"
 
 namespace tiltmap {
+
+// A patch in the form that is looked at most often, one a cache line. Scan frame, m; see PatchShape.
+struct alignas(64) PatchDisc {
+  float x = 0.0F, y = 0.0F, z = 0.0F, nx = 0.0F, ny = 0.0F, nz = 0.0F;
+  float ux = 0.0F, uy = 0.0F, uz = 0.0F, vx = 0.0F, vy = 0.0F, vz = 0.0F;
+  float reach_u = 0.0F, reach_v = 0.0F;  // from the centre to the edge
+  float offset_variance = 0.0F;          // m^2
+};
 
 // Immutable. Holds what the settings' components ask for: the tree for the pair choices that search one, the
 // directions for the projective one. Empty elements are possible (a scan without a point) and mean no
@@ -25,6 +34,9 @@ struct PreparedScan {
   std::optional<DirectionIndex> directions;  // likewise
   std::optional<DirectionIndex> wide_directions;  // the same in larger buckets, for the first steps
   std::optional<PatchRaster> raster;              // instead of both, for patches made of a matrix
+  std::vector<PatchDisc> discs;                   // with a raster: one an element
+  CellSamples cells;                              // likewise: the cells, for refinement, as measured
+  double spot_rad = 0.0;                          // of their light (patch_spot_rad); the patches are set back
   std::size_t raw_points = 0;                     // cells with a point before the filter
   std::size_t filter_changes = 0;                 // cells the filter changed
   double milliseconds = 0.0;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/registration/cell_refinement.h"
 #include "core/registration/pair_choice.h"
 #include "core/registration/sampling.h"
 
@@ -14,6 +15,13 @@ namespace {
 
 // The data's own scale is taken this often after the annealing, then kept, so that the iteration can settle.
 constexpr int kOwnScaleSteps = 3;
+constexpr int kOwnScaleStepsToRefine = 2;
+// Cells are given to patches once the pose moves less than this a step, and again while it moves more.
+constexpr double kRefineBelow_m = 3e-3;
+constexpr double kRefineBelow_rad = 3e-4;
+constexpr double kRefinedBelow_m = 2e-3;
+constexpr double kRefinedBelow_rad = 2e-4;
+constexpr int kMostRefinements = 4;
 // Surfaces that fit worse than this are not the same surfaces.
 constexpr double kMostExcess_m = 0.05;
 
@@ -113,7 +121,9 @@ Registration::Registration(PreparedScanPtr fixed, PreparedScanPtr moving, const 
   if (settings_.both_directions) fixed_sample_ = sampledElements(fixed_->elements, settings_);
   rejection_.distance_bound_m = settings_.max_distance_m;
   loss_ = firstLossScale(settings_);
-  own_scale_steps_left_ = settings_.loss == Loss::Annealed ? kOwnScaleSteps : 0;
+  if (settings_.loss == Loss::Annealed)
+    own_scale_steps_left_ =
+        settings_.refine && fixed_->raster && moving_->raster ? kOwnScaleStepsToRefine : kOwnScaleSteps;
 }
 
 StepReport Registration::step(const std::stop_token& stop) {
@@ -124,6 +134,8 @@ StepReport Registration::step(const std::stop_token& stop) {
   report.iteration = ++iteration_;
   if (stop.stop_requested()) {
     stop_ = StopReason::Cancelled;
+  } else if (refinements_ >= 0) {
+    stop_ = refineStep(report);
   } else {
     findPairsOfStep(report);
     stop_ = advance(report);
@@ -140,9 +152,9 @@ StepReport Registration::step(const std::stop_token& stop) {
 }
 
 void Registration::findPairsOfStep(StepReport& report) {
-  const bool wide =
-      settings_.pair_choice == PairChoice::Projective && loss_.scale_m > settings_.wide_search_above_m;
-  report.rejected = findPairs(*fixed_, *moving_, pose_, fixed_sample_, wide ? wide_sample_ : moving_sample_,
+  const bool coarse = settings_.pair_choice == PairChoice::Projective && !loss_.isOwn() &&
+                      loss_.scale_m > settings_.wide_search_above_m;
+  report.rejected = findPairs(*fixed_, *moving_, pose_, fixed_sample_, coarse ? wide_sample_ : moving_sample_,
                               loss_.scale_m, settings_, rejection_, pairs_);
   report.pairs = kept_ = report.rejected[static_cast<std::size_t>(RejectReason::None)];
   report.loss = loss_;
@@ -173,7 +185,41 @@ std::optional<StopReason> Registration::advance(StepReport& report) {
   }
   const bool settling = own_scale_steps_left_ == 0;
   updateLossScale();
-  return settling ? endOfStep(report, difference(before, pose_)) : limitReached();
+  if (!settling) return limitReached();
+  const PoseDifference motion = difference(before, pose_);
+  const std::optional<StopReason> end = endOfStep(report, motion);
+  const bool settled = motion.translation_m < kRefineBelow_m && motion.rotation_rad < kRefineBelow_rad;
+  if (!canRefine() || !(end ? isSuccess(*end) : settled)) return end;
+  refinements_ = 0;
+  return std::nullopt;
+}
+
+bool Registration::canRefine() const {
+  return settings_.refine && loss_.isOwn() && fixed_->raster && moving_->raster;
+}
+
+std::optional<StopReason> Registration::refineStep(StepReport& report) {
+  ++refinements_;
+  report.refining = true;
+  report.pairs = kept_;
+  report.loss = loss_;
+  report.error_m2 = error_m2_;
+  report.rms_m = rms_m_;
+  const Refined found = refined(*fixed_, *moving_, pose_, loss_.scale_m, settings_);
+  report.cells = found.cells;
+  if (found.patches < static_cast<std::size_t>(settings_.min_pairs)) {
+    report.condition = condition_;
+    return verified(StopReason::Converged);
+  }
+  const PoseDifference motion = difference(pose_, found.fixed_from_moving);
+  pose_ = found.fixed_from_moving;
+  information_ = found.system.h;
+  condition_ = conditioningOf(found.system, settings_.min_eigenvalue);
+  report.condition = condition_;
+  if (motion.translation_m < kRefinedBelow_m && motion.rotation_rad < kRefinedBelow_rad)
+    return verified(StopReason::TinyMotion);
+  if (refinements_ == kMostRefinements) return verified(StopReason::Converged);
+  return limitReached();
 }
 
 // Records what the linearised system says about the step's pose.

@@ -49,6 +49,10 @@ struct StepReport {
   Conditioning condition;
   double overlap = 0.0;    // see Registration::overlap
   double agreement = 0.0;  // see Registration::agreement
+  // A step of the refinement: cells were held against patches (refined). Pairs and error are those of the
+  // step before.
+  bool refining = false;
+  double cells = 0.0;  // of both scans, that lie on a patch of the other
   double milliseconds = 0.0;
   std::optional<StopReason> stop;  // set in the last step
 };
@@ -99,6 +103,8 @@ class Registration {
   void measure(Metric metric, const LinearSystem& system, StepReport& report);
   void updateLossScale();
   std::optional<StopReason> limitReached() const;
+  bool canRefine() const;
+  std::optional<StopReason> refineStep(StepReport& report);
   std::optional<StopReason> endOfStep(const StepReport& report, const PoseDifference& motion) const;
   StopReason verified(StopReason reason) const;
 
@@ -113,6 +119,7 @@ class Registration {
   int iteration_ = 0;
   LossScale loss_;
   int own_scale_steps_left_ = 0;
+  int refinements_ = -1;  // made so far; before the first one is due: -1
   double error_m2_ = 0.0;
   double overlap_ = 0.0, agreement_ = 0.0, rms_m_ = 0.0;
   std::size_t kept_ = 0;

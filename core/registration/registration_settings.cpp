@@ -76,13 +76,12 @@ void addPreparation(Table& t) {
          "Blocks: how many cells the noise model (patch-noise) counts for beside a block's own residual, "
          "which a few cells tell only roughly.",
          "ours");
-  t.angle("patch-spot", &S::patch_spot_rad, 0.0, 5.0,
-          "Blocks: deviation of the light across the beam. The near side of a slanted spot returns "
-          "more, so "
-          "ranges come out short, and far ground too high; patches are set back by it, or dropped where the "
-          "spot is "
-          "drawn out too long. 0: a thin beam.",
-          "ours; 0.16 deg goes with the LMS-291's 11.9 mrad");
+  t.angle(
+      "patch-spot", &S::patch_spot_rad, 0.0, 5.0,
+      "Blocks of a scanner's regular matrix: deviation of the light across the beam. The near side of a "
+      "slanted spot returns more, so ranges come out short, and far ground too high; surfaces are set back "
+      "by it, or dropped where the spot is drawn out too long. 0: a thin beam.",
+      "ours; 0.16 deg goes with the LMS-291's 11.9 mrad");
   t.choice("sampling", &S::sampling,
            {{"all", Sampling::All},
             {"uniform", Sampling::Uniform},
@@ -159,6 +158,17 @@ void addEstimation(Table& t) {
 }
 
 void addEnd(Table& t) {
+  t.boolean(
+      "refine", &S::refine,
+      "At last hold each scan's cells against the other's patches, all that lie on one together (blocks "
+      "of a matrix only).",
+      "ours");
+  t.real("refine-whole", &S::refine_whole_m, "m", 0.0, 100.0,
+         "The cells of a tile smaller than this count as one point there.", "ours");
+  t.real("refine-deviations", &S::refine_deviations, "", 0.5, 100.0,
+         "Patches whose cells are further off than so many deviations lose their weight there (Geman and "
+         "McClure).",
+         "ours");
   t.integer("max-iterations", &S::max_iterations, "", 1, 10000, "Steps at most.", "ours");
   t.real("min-change", &S::min_change, "%", 0.0, 100.0,
          "Converged when the mean squared residual changes by less in one step.",

@@ -57,7 +57,7 @@ struct RegistrationSettings : RejectionSettings {
   double reduction_distance_m = 0.5;  // line and voxel
   int normal_neighbours = 12;         // normals of an unordered cloud, for point methods
   PatchGrouping patch_grouping = PatchGrouping::Auto;
-  double patch_near_m = 4.0;  // median range from which a matrix is cut into blocks
+  double patch_near_m = 4.0;   // median range from which a matrix is cut into blocks
   double patch_size_m = 2.0;   // edge of the cubes
   double patch_block_m = 1.0;  // longest side of a block
   int patch_rows = 2;          // size of the smallest blocks, cells
@@ -72,7 +72,8 @@ struct RegistrationSettings : RejectionSettings {
   double patch_rough_noise_m = 0.03;
   double patch_rough_floor_m = 0.02;
   double patch_prior = 10.0;  // blocks: the noise model counts as much as so many of a block's cells
-  double patch_spot_rad = 0.0;  // blocks: deviation of the light across the beam; 0: a thin beam
+  double patch_spot_rad =
+      0.16 * kDegree;  // blocks of a regular matrix: deviation of the light across the beam
 
   // Sampling.
   Sampling sampling = Sampling::All;
@@ -96,6 +97,11 @@ struct RegistrationSettings : RejectionSettings {
   double loss_end_m = 0.02;       // annealed: down to here, then to the data's own
   double loss_deviations = 2.0;   // annealed, patches: in the end so many deviations of each pair's residual
   double loss_minimum_m = 0.002;  // annealed, points: in the end the median residual, but never below
+
+  // Refinement: at last each scan's cells against the other's patches (blocks of a matrix only).
+  bool refine = true;
+  double refine_whole_m = 0.2;     // a tile smaller than this counts as one point
+  double refine_deviations = 3.0;  // Geman-McClure: so many deviations
 
   // End of the iteration.
   int max_iterations = 60;

@@ -71,6 +71,7 @@ TEST(Patches, FarGroundIsSetBackByTheSpotOrLeftOut) {
     return (1.0 - spot_rad * spot_rad * (1.0 / (cos_incidence * cos_incidence) - 1.0)) / cos_incidence;
   });
   RegistrationSettings s;
+  s.patch_spot_rad = 0.0;
   const auto highest = [&](double& furthest_m) {
     double height_m = -1.0;
     furthest_m = 0.0;
@@ -242,7 +243,7 @@ TEST(PatchRaster, LooksFurtherWithALongerReachAndStopsWhenTold) {
     return ScannerGeometry().direction(tilt_deg * kDegree, azimuth_deg * kDegree);
   };
   raster.paint(at(90.0, 0.5), 1);
-  raster.paint(at(90.0, 4.5), 2);
+  raster.paint(at(90.0, 5.2), 2);
   const auto seen = [&](int reach, std::size_t most) {
     std::vector<std::uint32_t> all;
     raster.around(at(90.0, 0.5), reach, [&](std::uint32_t patch) {

@@ -67,10 +67,22 @@ TEST(DefaultPreset, IsWithinMillimetresOnBothExperiments) {
     const Errors errors = errorsOf(id, 1, 5, RegistrationSettings{});
     EXPECT_EQ(errors.translation_m.size(), id == ExperimentId::Exp1 ? 20U : 65U);
     EXPECT_TRUE(errors.failed.empty()) << errors.failed.front();
-    EXPECT_LT(median(errors.translation_m), 0.006);
-    EXPECT_LT(median(errors.rotation_deg), 0.05);
-    EXPECT_LT(worst(errors.translation_m), 0.025);
+    EXPECT_LT(median(errors.translation_m), 0.0015);
+    EXPECT_LT(median(errors.rotation_deg), 0.01);
+    EXPECT_LT(worst(errors.translation_m), 0.015);
   }
+}
+
+TEST(DefaultPreset, IsFinerByItsCellsThanByItsPatches) {
+  RegistrationSettings patches;
+  patches.refine = false;
+  const auto square = [](const Errors& errors) {
+    double sum = 0.0;
+    for (const double e : errors.translation_m) sum += e * e;
+    return sum;
+  };
+  EXPECT_LT(square(errorsOf(ExperimentId::Exp2Fixed, 1, 2, {})),
+            0.7 * square(errorsOf(ExperimentId::Exp2Fixed, 1, 2, patches)));
 }
 
 TEST(ThesisPreset, IsBetterThanOdometryAndWorseThanTheDefault) {
