@@ -1,6 +1,7 @@
 #include "core/registration/block_patches.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -15,31 +16,48 @@ namespace {
 
 constexpr int kLargestLevel = 5;  // 32 x 32 tiles
 
+// A bound from below on the smallest eigenvalue of a covariance, at least a third of it: the sum of the
+// inverse eigenvalues is that of the principal minors over the determinant.
+double leastResidual(const Eigen::Matrix3d& c) {
+  const double xx = c(1, 1) * c(2, 2) - c(1, 2) * c(1, 2), yy = c(0, 0) * c(2, 2) - c(0, 2) * c(0, 2),
+               zz = c(0, 0) * c(1, 1) - c(0, 1) * c(0, 1);
+  const double minors = xx + yy + zz;
+  if (!(minors > 0.0)) return 0.0;
+  const double determinant = c(0, 0) * xx - c(0, 1) * (c(0, 1) * c(2, 2) - c(1, 2) * c(0, 2)) +
+                             c(0, 2) * (c(0, 1) * c(1, 2) - c(1, 1) * c(0, 2));
+  return determinant / minors;
+}
+
 class Pyramid {
  public:
-  Pyramid(MomentGrid tiles, const RegistrationSettings& settings, BlockPatches& out)
+  Pyramid(const RangeImage& image, const ScannerGeometry& geometry, const RegistrationSettings& settings,
+          BlockPatches& out)
       : settings_(settings), spot_rad_(out.spot_rad), out_(out) {
-    levels_.push_back(std::move(tiles));
-    while (static_cast<int>(levels_.size()) <= kLargestLevel &&
-           (levels_.back().rows > 1 || levels_.back().columns > 1))
-      levels_.push_back(halved(levels_.back()));
+    tileMoments(image, geometry, settings.patch_rows, settings.patch_columns, settings.patch_drop_edges,
+                settings.refine ? &out.cells : nullptr, settings.refine_whole_m, levels_.front());
+    while (top_ < kLargestLevel && (level(top_).rows > 1 || level(top_).columns > 1)) {
+      halve(level(top_), levels_[static_cast<std::size_t>(top_) + 1]);
+      ++top_;
+    }
   }
 
   void descend() {
-    const int top = static_cast<int>(levels_.size()) - 1;
-    const MomentGrid& grid = levels_.back();
+    const MomentGrid& grid = level(top_);
     for (int row = 0; row < grid.rows; ++row)
-      for (int column = 0; column < grid.columns; ++column) look(top, row, column);
+      for (int column = 0; column < grid.columns; ++column) look(top_, row, column);
   }
 
  private:
+  static const MomentGrid& level(int at) { return levels_[static_cast<std::size_t>(at)]; }
+
   void look(int level, int row, int column) {
-    const Moments& m = levels_[static_cast<std::size_t>(level)].at(row, column);
+    const Moments& m = this->level(level).at(row, column);
     if (m.n < settings_.patch_min_points) return;
     const Eigen::Matrix3d covariance = m.covariance();
     // The variance of a uniform line of length L is L^2 / 12.
     const double largest = settings_.patch_block_m * settings_.patch_block_m / 12.0;
     if (level > 0 && covariance.trace() > 2.0 * largest) return split(level, row, column);
+    if (level > 0 && leastResidual(covariance) > mostOfAPlane()) return split(level, row, column);
     solver_.computeDirect(covariance);
     const Eigen::Vector3d values = solver_.eigenvalues();
     if (level > 0 && values[2] > largest) return split(level, row, column);
@@ -67,8 +85,14 @@ class Pyramid {
           out_.raster.paint({tile.x, tile.y, tile.z}, patch);
   }
 
+  // What fitsPlane allows at most, whichever way the plane is seen.
+  double mostOfAPlane() const {
+    const double noise = settings_.patch_noise_m, floor = settings_.patch_floor_m;
+    return 2.0 * (noise * noise + floor * floor);
+  }
+
   void split(int level, int row, int column) {
-    const MomentGrid& grid = levels_[static_cast<std::size_t>(level) - 1];
+    const MomentGrid& grid = this->level(level - 1);
     for (const int r : {2 * row, 2 * row + 1})
       for (const int c : {2 * column, 2 * column + 1})
         if (r < grid.rows && c < grid.columns) look(level - 1, r, c);
@@ -77,9 +101,13 @@ class Pyramid {
   const RegistrationSettings& settings_;
   double spot_rad_;
   BlockPatches& out_;
-  std::vector<MomentGrid> levels_;
+  int top_ = 0;
+  // Fresh memory costs more than what is added up there.
+  static thread_local std::array<MomentGrid, kLargestLevel + 1> levels_;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver_;
 };
+
+thread_local std::array<MomentGrid, kLargestLevel + 1> Pyramid::levels_;
 
 }  // namespace
 
@@ -88,10 +116,7 @@ BlockPatches blockPatches(const RangeImage& image, const ScannerGeometry& geomet
   BlockPatches out;
   out.spot_rad = image.isRegular() ? settings.patch_spot_rad : 0.0;
   if (settings.refine) out.cells.reserve(image.validCells());
-  Pyramid pyramid(
-      tileMoments(image, geometry, settings.patch_rows, settings.patch_columns, settings.patch_drop_edges,
-                  settings.refine ? &out.cells : nullptr, settings.refine_whole_m),
-      settings, out);
+  Pyramid pyramid(image, geometry, settings, out);
   pyramid.descend();
   out.raster.closeGaps();
   return out;

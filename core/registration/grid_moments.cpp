@@ -57,8 +57,8 @@ struct LinePlane {
 class InverseRanges {
  public:
   InverseRanges(const RangeImage& image, const ScannerGeometry& geometry)
-      : stride_(static_cast<std::size_t>(image.columns()) + 2),
-        inverse_(stride_ * (static_cast<std::size_t>(image.rows()) + 2), 0.0F) {
+      : stride_(static_cast<std::size_t>(image.columns()) + 2) {
+    inverse_.assign(stride_ * (static_cast<std::size_t>(image.rows()) + 2), 0.0F);
     const auto columns = static_cast<std::size_t>(image.columns());
     const auto offset = static_cast<float>(geometry.range_offset_m);
     const float* range = image.data().range_m.data();
@@ -77,15 +77,15 @@ class InverseRanges {
 
  private:
   std::size_t stride_;
-  std::vector<float> inverse_;
+  // Fresh memory costs more than what is written there.
+  static thread_local std::vector<float> inverse_;
 };
+thread_local std::vector<float> InverseRanges::inverse_;
 
-MomentGrid emptyGrid(const RangeImage& image, int tile_rows, int tile_columns) {
-  MomentGrid grid;
-  grid.rows = (image.rows() + tile_rows - 1) / tile_rows;
-  grid.columns = (image.columns() + tile_columns - 1) / tile_columns;
-  grid.tile.resize(static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.columns));
-  return grid;
+void clear(MomentGrid& grid, int rows, int columns) {
+  grid.rows = rows;
+  grid.columns = columns;
+  grid.tile.assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), Moments{});
 }
 
 // Whether the cells of a tile lie so near each other that their mean stands for them.
@@ -221,8 +221,16 @@ Eigen::Matrix3d Moments::covariance() const {
 
 MomentGrid tileMoments(const RangeImage& image, const ScannerGeometry& geometry, int tile_rows,
                        int tile_columns, bool drop_edges, CellSamples* samples, double whole_below_m) {
+  MomentGrid grid;
+  tileMoments(image, geometry, tile_rows, tile_columns, drop_edges, samples, whole_below_m, grid);
+  return grid;
+}
+
+void tileMoments(const RangeImage& image, const ScannerGeometry& geometry, int tile_rows, int tile_columns,
+                 bool drop_edges, CellSamples* samples, double whole_below_m, MomentGrid& grid) {
   if (tile_rows < 1 || tile_columns < 1) throw std::invalid_argument("tileMoments: a tile has no cells");
-  MomentGrid grid = emptyGrid(image, tile_rows, tile_columns);
+  clear(grid, (image.rows() + tile_rows - 1) / tile_rows,
+        (image.columns() + tile_columns - 1) / tile_columns);
   if (image.isRegular()) {
     RegularTiles lines(image, geometry, tile_rows, tile_columns, drop_edges);
     for (int row = 0; row < image.rows(); ++row) {
@@ -231,7 +239,7 @@ MomentGrid tileMoments(const RangeImage& image, const ScannerGeometry& geometry,
       if (samples && ((row + 1) % tile_rows == 0 || row + 1 == image.rows()))
         lines.sample(tiles, whole_below_m, *samples);
     }
-    return grid;
+    return;
   }
   const auto tileOf = [&](int row, int column) -> Moments& {
     return grid.tile[static_cast<std::size_t>(row / tile_rows * grid.columns + column / tile_columns)];
@@ -243,25 +251,20 @@ MomentGrid tileMoments(const RangeImage& image, const ScannerGeometry& geometry,
       tileOf(row, column) += {1.0,           p.x(),         p.y(),         p.z(),         p.x() * p.x(),
                               p.x() * p.y(), p.x() * p.z(), p.y() * p.y(), p.y() * p.z(), p.z() * p.z()};
     }
-  if (!samples) return grid;
+  if (!samples) return;
   for (const Moments& tile : grid.tile)
     if (tile.n > 0.0 && isOne(tile, whole_below_m)) samples->add(tile.mean(), tile.n);
   for (int row = 0; row < image.rows(); ++row)
     for (int column = 0; column < image.columns(); ++column)
       if (image.hasPoint(row, column) && !isOne(tileOf(row, column), whole_below_m))
         samples->add(cellPoint(image, geometry, row, column), 1.0);
-  return grid;
 }
 
-MomentGrid halved(const MomentGrid& fine) {
-  MomentGrid coarse;
-  coarse.rows = (fine.rows + 1) / 2;
-  coarse.columns = (fine.columns + 1) / 2;
-  coarse.tile.resize(static_cast<std::size_t>(coarse.rows) * static_cast<std::size_t>(coarse.columns));
+void halve(const MomentGrid& fine, MomentGrid& coarse) {
+  clear(coarse, (fine.rows + 1) / 2, (fine.columns + 1) / 2);
   for (int row = 0; row < fine.rows; ++row)
     for (int column = 0; column < fine.columns; ++column)
       coarse.tile[static_cast<std::size_t>(row / 2 * coarse.columns + column / 2)] += fine.at(row, column);
-  return coarse;
 }
 
 }  // namespace tiltmap

@@ -44,8 +44,11 @@ struct MomentGrid {
 MomentGrid tileMoments(const RangeImage& image, const ScannerGeometry& geometry, int tile_rows,
                        int tile_columns, bool drop_edges, CellSamples* samples = nullptr,
                        double whole_below_m = 0.0);
+// The same into a grid whose memory is used again.
+void tileMoments(const RangeImage& image, const ScannerGeometry& geometry, int tile_rows, int tile_columns,
+                 bool drop_edges, CellSamples* samples, double whole_below_m, MomentGrid& grid);
 
 // 2 x 2 tiles added up.
-MomentGrid halved(const MomentGrid& fine);
+void halve(const MomentGrid& fine, MomentGrid& coarse);
 
 }  // namespace tiltmap

@@ -14,6 +14,7 @@ constexpr double kFittingSquare = 9.0;        // three deviations
 constexpr int kRounds = 5;                    // the ratio is within a percent of 1 after three
 constexpr int kTrimmedRounds = 3;
 constexpr double kEnough = 0.02;
+constexpr std::size_t kEnoughValues = 500;
 
 // The value that one in `share` lies below; reorders.
 double quantileOf(std::vector<double>& values, std::size_t share) {
@@ -22,17 +23,34 @@ double quantileOf(std::vector<double>& values, std::size_t share) {
   return *place;
 }
 
+// Evenly spread, as many as tell a scale within a few percent.
+std::vector<double> sampled(const std::vector<double>& all) {
+  const std::size_t step = (all.size() + kEnoughValues - 1) / kEnoughValues;
+  std::vector<double> some;
+  some.reserve(kEnoughValues);
+  for (std::size_t i = 0; i < all.size(); i += step) some.push_back(all[i]);
+  return some;
+}
+
 }  // namespace
+
+double typicalOf(const std::vector<double>& values) {
+  if (values.empty()) throw std::invalid_argument("typicalOf: no values");
+  std::vector<double> some = sampled(values);
+  return quantileOf(some, 2);
+}
 
 double medianOf(std::vector<double> values) {
   if (values.empty()) throw std::invalid_argument("medianOf: no values");
   return quantileOf(values, 2);
 }
 
-double excessDeviation(const std::vector<double>& residuals_m, const std::vector<double>& variances_m2) {
-  if (residuals_m.size() != variances_m2.size())
+double excessDeviation(const std::vector<double>& all_residuals_m,
+                       const std::vector<double>& all_variances_m2) {
+  if (all_residuals_m.size() != all_variances_m2.size())
     throw std::invalid_argument("excessDeviation: residuals and variances differ in number");
-  if (residuals_m.empty()) return 0.0;
+  if (all_residuals_m.empty()) return 0.0;
+  const std::vector<double> residuals_m = sampled(all_residuals_m), variances_m2 = sampled(all_variances_m2);
   const auto square = [&](std::size_t i, double excess) {
     return residuals_m[i] * residuals_m[i] / (variances_m2[i] + excess);
   };

@@ -23,10 +23,11 @@ struct LossScale {
 // The deviation, metres, that the patches' own variances leave unexplained: with it added, residuals spread
 // as normal ones would. 0 where nothing is left. An estimator of a variance between studies (Mandel and Paule
 // 1970), ours by ranks: first by the lower quarter, since where scans share little more than half of the
-// pairs may be wrong, then three times by the median of what lies within three deviations. Both of the same
-// size; 0 where they are empty.
+// pairs may be wrong, then three times by the median of what lies within three deviations. Of many at most
+// 500 are looked at, evenly spread. Both of the same size; 0 where they are empty.
 double excessDeviation(const std::vector<double>& residuals_m, const std::vector<double>& variances_m2);
 
-double medianOf(std::vector<double> values);  // the upper one of an even number; not empty
+double typicalOf(const std::vector<double>& values);  // the median of at most 500 of them, evenly spread
+double medianOf(std::vector<double> values);          // the upper one of an even number; not empty
 
 }  // namespace tiltmap

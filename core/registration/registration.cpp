@@ -118,7 +118,10 @@ Registration::Registration(PreparedScanPtr fixed, PreparedScanPtr moving, const 
   if (!start_.isFinite()) throw std::invalid_argument("Registration: the start is not finite");
   moving_sample_ = sampledElements(moving_->elements, settings_);
   wide_sample_ = everyNth(moving_sample_, settings_.wide_step, kWideSample);
-  if (settings_.both_directions) fixed_sample_ = sampledElements(fixed_->elements, settings_);
+  if (settings_.both_directions) {
+    fixed_sample_ = sampledElements(fixed_->elements, settings_);
+    wide_fixed_sample_ = everyNth(fixed_sample_, settings_.wide_step, kWideSample);
+  }
   rejection_.distance_bound_m = settings_.max_distance_m;
   loss_ = firstLossScale(settings_);
   if (settings_.loss == Loss::Annealed)
@@ -152,10 +155,13 @@ StepReport Registration::step(const std::stop_token& stop) {
 }
 
 void Registration::findPairsOfStep(StepReport& report) {
+  // Annealing needs no fine pose; blocks are many.
+  const bool blocks = fixed_->raster && moving_->raster && settings_.loss == Loss::Annealed;
   const bool coarse = settings_.pair_choice == PairChoice::Projective && !loss_.isOwn() &&
-                      loss_.scale_m > settings_.wide_search_above_m;
-  report.rejected = findPairs(*fixed_, *moving_, pose_, fixed_sample_, coarse ? wide_sample_ : moving_sample_,
-                              loss_.scale_m, settings_, rejection_, pairs_);
+                      (blocks || loss_.scale_m > settings_.wide_search_above_m);
+  report.rejected =
+      findPairs(*fixed_, *moving_, pose_, coarse ? wide_fixed_sample_ : fixed_sample_,
+                coarse ? wide_sample_ : moving_sample_, loss_.scale_m, settings_, rejection_, pairs_);
   report.pairs = kept_ = report.rejected[static_cast<std::size_t>(RejectReason::None)];
   report.loss = loss_;
 }
@@ -245,7 +251,7 @@ void Registration::measure(Metric metric, const LinearSystem& system, StepReport
 
 void Registration::updateLossScale() {
   if (settings_.loss != Loss::Annealed || own_scale_steps_left_ == 0 || residuals_.size_m.empty()) return;
-  const double typical = medianOf(residuals_.size_m);
+  const double typical = typicalOf(residuals_.size_m);
   if (!loss_.isOwn() && loss_.scale_m > settings_.loss_end_m) {
     // A start that is good already need not wait for the scale to come down.
     const double next = std::min(loss_.scale_m * settings_.loss_factor, settings_.loss_follow * typical);

@@ -112,7 +112,7 @@ class Registration {
   RegistrationSettings settings_;
   Pose start_, pose_;
   std::vector<std::uint32_t> moving_sample_, fixed_sample_;
-  std::vector<std::uint32_t> wide_sample_;  // of the moving scan, while the search is wide
+  std::vector<std::uint32_t> wide_sample_, wide_fixed_sample_;  // fewer, in the first steps
   std::vector<Correspondence> pairs_;
   RejectionState rejection_;
   Residuals residuals_;

@@ -109,8 +109,11 @@ void addPairing(Table& t) {
   t.real("wide-search-above", &S::wide_search_above_m, "m", 0.0, 1000.0,
          "The projective choice looks in a three times wider field while the loss scale is above this.",
          "ours");
-  t.integer("wide-step", &S::wide_step, "", 1, 100,
-            "While it does, one patch in so many is paired: they are soon paired again.", "ours");
+  t.integer(
+      "wide-step", &S::wide_step, "", 1, 100,
+      "While it does, and for blocks until the data's own scale is taken, one patch in so many is paired: "
+      "they are soon paired again.",
+      "ours");
   t.boolean("both-directions", &S::both_directions,
             "Pair the fixed scan's elements with the moving scan's too.", "ours");
   t.real("both-directions-below", &S::both_directions_below_m, "m", 0.0, 100.0,

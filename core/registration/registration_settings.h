@@ -82,7 +82,7 @@ struct RegistrationSettings : RejectionSettings {
 
   PairChoice pair_choice = PairChoice::Projective;
   double wide_search_above_m = 0.3;      // projective: three times wider while the loss scale is above
-  int wide_step = 3;                     // and only one patch in so many is paired then
+  int wide_step = 2;                     // and only one patch in so many is paired then
   bool both_directions = true;           // also pair the fixed scan's elements with the moving ones
   double both_directions_below_m = 0.1;  // only once the loss scale is below; loss none: always
 
