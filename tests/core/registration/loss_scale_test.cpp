@@ -33,7 +33,7 @@ Sample sample(double excess_m, double wrong_share) {
 TEST(ExcessDeviation, IsWhatThePatchesOwnVariancesLeaveUnexplained) {
   for (const double excess : {0.003, 0.01, 0.03}) {
     const Sample s = sample(excess, 0.0);
-    EXPECT_NEAR(excessDeviation(s.residuals_m, s.variances_m2), excess, 0.05 * excess);
+    EXPECT_NEAR(excessDeviation(s.residuals_m, s.variances_m2), excess, 0.2 * excess);
   }
 }
 
