@@ -87,7 +87,11 @@ Result<RgbImage> windowPicture(const SnapshotPtr& snapshot, const ScreenshotWord
   settings.width_px = size.width;
   settings.height_px = size.height;
   settings.scale = words.scale;
-  settings.theme = words.theme == "light" ? ui::ThemeChoice::Light : ui::ThemeChoice::Dark;
+  settings.theme = words.theme == "light"           ? ui::ThemeChoice::Light
+                   : words.theme == "high-contrast" ? ui::ThemeChoice::HighContrast
+                                                    : ui::ThemeChoice::Dark;
+  settings.colouring = words.colour;
+  settings.quantity = words.quantity;
   settings.perspective = ui::parsePerspective(words.perspective).value_or(ui::Perspective::Inspect);
   settings.front = words.front;
   if (words.scan >= 0) settings.scan = static_cast<std::size_t>(words.scan);
@@ -180,8 +184,8 @@ void addScreenshot(CLI::App& app, Chosen& chosen) {
       ->check(CLI::NonNegativeNumber)
       ->needs("--pair");
   command->add_option("--preset", words->preset, "Of the ICP stepper: default or thesis")->needs("--pair");
-  command->add_option("--theme", words->theme, "Of window and panels: dark or light")
-      ->check(CLI::IsMember({"dark", "light"}));
+  command->add_option("--theme", words->theme, "Of window and panels: dark, light or high-contrast")
+      ->check(CLI::IsMember({"dark", "light", "high-contrast"}));
   command->add_option("--scale", words->scale, "Of window and panels, as on a fine screen: 1 to 4")
       ->check(CLI::Range(1.0, 4.0));
   command->add_option("--points", words->points, "all or reduced")->check(CLI::IsMember({"all", "reduced"}));

@@ -60,7 +60,7 @@ Result<ColourScale> colourScale(const CloudForExport& cloud, CloudColour colour,
   return ColourScale{samples[samples.size() / 100], samples[samples.size() - 1 - samples.size() / 100]};
 }
 
-Rgb PointColours::of(const Eigen::Vector3d& in_world, float intensity, int scan) const {
+Rgb PointColours::of(const Eigen::Vector3d& in_world, float intensity, const ExportScan& scan) const {
   const auto along = [this](double value) {
     const double span = scale_.high - scale_.low;
     return span > 0.0 ? std::clamp((value - scale_.low) / span, 0.0, 1.0) : 0.5;
@@ -70,7 +70,7 @@ Rgb PointColours::of(const Eigen::Vector3d& in_world, float intensity, int scan)
       break;
     // Steps of the golden ratio keep the hues of neighbouring scans apart.
     case CloudColour::Scan:
-      return hue(0.61803398874989485 * scan, 0.9);
+      return scan.colour ? *scan.colour : hue(0.61803398874989485 * scan.index, 0.9);
     case CloudColour::Height:
       return hue((1.0 - along(in_world.z())) * 2.0 / 3.0, 1.0);
     case CloudColour::Intensity: {
@@ -135,7 +135,7 @@ Status CloudStream::forEach(const std::ostream& out,
       point.normal =
           cloud.hasNormal(k) ? Eigen::Vector3d(rotation * cloud.normals[k]) : Eigen::Vector3d::Zero();
       point.intensity = cloud.intensity.empty() ? 0.0F : cloud.intensity[k];
-      if (colours_.any()) point.colour = colours_.of(point.position, point.intensity, point.scan);
+      if (colours_.any()) point.colour = colours_.of(point.position, point.intensity, *scan);
       use(point);
     }
   }

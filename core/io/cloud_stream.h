@@ -30,7 +30,7 @@ class PointColours {
   PointColours(CloudColour colour, ColourScale scale) : colour_(colour), scale_(scale) {}
 
   bool any() const { return colour_ != CloudColour::None; }
-  Rgb of(const Eigen::Vector3d& in_world, float intensity, int scan) const;
+  Rgb of(const Eigen::Vector3d& in_world, float intensity, const ExportScan& scan) const;
 
  private:
   CloudColour colour_;

@@ -1,7 +1,9 @@
 // Writing points for other programs.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -32,7 +34,7 @@ Result<CloudFormat> cloudFormatOf(const std::filesystem::path& path);
 
 enum class CloudColour {
   None,
-  Scan,       // a hue for each scan
+  Scan,       // ExportScan::colour
   Height,     // z in the world, blue to red over 1 to 99 % of the points
   Intensity,  // grey over 1 to 99 %
 };
@@ -46,6 +48,7 @@ struct ExportScan {
   // that is empty, the cells with a point.
   RangeImagePtr image;
   ScannerGeometry geometry;
+  std::optional<std::array<std::uint8_t, 3>> colour;  // for CloudColour::Scan; nothing: a hue by index
 };
 
 // What to write, scan by scan, so that only one need be in memory. `scan` is called several times for each

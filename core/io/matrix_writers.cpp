@@ -70,7 +70,7 @@ Status forCells(std::ostream& out, std::string& bytes, std::size_t cells, const 
 
 Rgb colourOf(const ExportScan& scan, const Matrix& matrix, std::size_t cell, const PointColours& colours) {
   return colours.of(scan.world_from_scan * matrix.points[cell],
-                    matrix.intensity.empty() ? 0.0F : matrix.intensity[cell], scan.index);
+                    matrix.intensity.empty() ? 0.0F : matrix.intensity[cell], scan);
 }
 
 Status writePtxScan(std::ostream& out, const ExportScan& scan, const MatrixOptions& options,

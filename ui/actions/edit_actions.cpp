@@ -80,6 +80,13 @@ void addEditActions(ActionRegistry& actions, WindowCommands& window) {
                QKeySequence(Qt::Key_F2), [&window] { window.beginRename(); }, oneScan});
   actions.add({"edit.note", "Edit no&te", "Write a note about the selected scan", "document-edit",
                QKeySequence("Ctrl+T"), [&window] { window.beginNote(); }, oneScan});
+  actions.add({"edit.photograph",
+               "Add photogra&phs…",
+               "Put photographs of the selected stop into the project",
+               "camera-photo",
+               {},
+               [&window] { window.addPhotographs(); },
+               [&workspace, free] { return free() && !workspace.snapshot()->scans().empty(); }});
   actions.add({"edit.colour", "Co&lour…",
                "Give the selected scans a colour of their own in every view and picture", "color-picker",
                QKeySequence("Ctrl+Shift+C"), [&window] { window.showColours(); }, someScans});

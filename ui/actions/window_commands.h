@@ -40,6 +40,7 @@ class WindowCommands {
   // In the tree: the current scan's name becomes editable.
   virtual void beginRename() = 0;
   virtual void beginNote() = 0;
+  virtual void addPhotographs() = 0;
 };
 
 // One function a group; each lives in the file of its name.

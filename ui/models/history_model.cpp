@@ -50,18 +50,21 @@ QVariant HistoryModel::data(const QModelIndex& index, int role) const {
     font.setItalic(entry && entry->undone);
     return font;
   }
-  if (role == Qt::ToolTipRole)
-    return current ? QString("The project stands here")
-                   : QString("Double-click to bring the project to this state");
+  const QDateTime when =
+      entry ? QDateTime::fromString(qt(entry->time), Qt::ISODateWithMs).toLocalTime() : QDateTime();
+  if (role == Qt::ToolTipRole) {
+    const QString what = current ? QString("The project stands here")
+                                 : QString("Double-click to bring the project to this state");
+    return entry ? QString("%1, %2\n%3").arg(qt(entry->title), when.toString("yyyy-MM-dd HH:mm:ss"), what)
+                 : what;
+  }
   if (role != Qt::DisplayRole) return {};
   switch (index.column()) {
     case What:
       return entry ? qt(entry->title) : QString("project made");
     case When:
-      return entry ? QDateTime::fromString(qt(entry->time), Qt::ISODateWithMs)
-                         .toLocalTime()
-                         .toString("yyyy-MM-dd HH:mm:ss")
-                   : QString();
+      // Today's without their date: the column is in a narrow panel. The tooltip has all of it.
+      return when.toString(when.date() == QDate::currentDate() ? "HH:mm:ss" : "yyyy-MM-dd HH:mm");
     case State:
       if (current) return "here";
       return !entry          ? QString()

@@ -37,7 +37,7 @@ QString scanTip(const ScanEntry& scan, std::size_t index) {
 
 QString linkSummary(const Link& link, LengthUnit unit) {
   if (!link.succeeded) return "failed: " + qt(link.stop_reason);
-  const QString text = smallLengthText(link.rms_m, unit) + ", overlap " + percent(link.overlap);
+  const QString text = smallLengthText(link.rms_m, unit) + ", " + percent(link.overlap) + " overlap";
   return link.state == LinkState::Disabled ? "disabled, " + text : text;
 }
 

@@ -10,7 +10,7 @@ namespace tiltmap::ui {
 
 QString scanSummary(const ScanEntry& scan);                 // "28,310 points", "7 of 101 lines"
 QString scanTip(const ScanEntry& scan, std::size_t index);  // rich text
-QString linkSummary(const Link& link, LengthUnit unit);     // "5.2 mm, overlap 61 %"
+QString linkSummary(const Link& link, LengthUnit unit);     // "5.2 mm, 61 % overlap"
 QString linkTip(const ProjectSnapshot& snapshot, const Link& link, LengthUnit unit);
 QString stageTitle(Stage stage);                                     // "Pairwise"
 QString stageTip(Stage stage);                                       // one sentence

@@ -50,14 +50,6 @@ const char* shortTitle(DepthQuantity quantity) {
   return "";
 }
 
-QString number(double value, int places) {
-  return qt(fixedReal(value, places));
-}
-
-QString vectorText(const Eigen::Vector3d& v, int places) {
-  return QString("(%1, %2, %3)").arg(number(v.x(), places), number(v.y(), places), number(v.z(), places));
-}
-
 RgbImage sideBySide(const RgbImage& left, const RgbImage& right) {
   RgbImage both(left.width + right.width, std::max(left.height, right.height), left.at(0, 0));
   for (int y = 0; y < left.height; ++y)
@@ -70,17 +62,19 @@ RgbImage sideBySide(const RgbImage& left, const RgbImage& right) {
 }  // namespace
 
 DepthImagePanel::DepthImagePanel(const PanelContext& context, QWidget* parent)
-    : QWidget(parent), context_(context) {
+    : QWidget(parent), context_(context), model_(new DepthModel(context.workspace, this)) {
   for (int side = 0; side < 2; ++side) {
     views_[side] = new DepthView(context.theme, this);
     views_[side]->setObjectName(QString("depth-view-%1").arg(side));
     views_[side]->setAccessibleName(side == 0 ? "Depth image" : "Second depth image");
     connect(views_[side], &DepthView::hovered, this, [this](const std::optional<MatrixCell>& cell) {
       context_.workspace.selection().setHovered(
-          cell && scan_ ? std::optional(CellPlace{*scan_, cell->row, cell->column}) : std::nullopt);
+          cell && model_->scan() ? std::optional(CellPlace{*model_->scan(), cell->row, cell->column})
+                                 : std::nullopt);
     });
     connect(views_[side], &DepthView::picked, this, [this](const MatrixCell& cell) {
-      if (scan_) context_.workspace.selection().setPicked(CellPlace{*scan_, cell.row, cell.column});
+      if (model_->scan())
+        context_.workspace.selection().setPicked(CellPlace{*model_->scan(), cell.row, cell.column});
     });
     connect(views_[side], &DepthView::windowChanged, this,
             [this, side](const DepthWindow& window) { views_[1 - side]->setWindow(window); });
@@ -121,14 +115,15 @@ DepthImagePanel::DepthImagePanel(const PanelContext& context, QWidget* parent)
   setFocusProxy(views_[0]);
 
   Workspace& workspace = context.workspace;
-  connect(&workspace.selection(), &Selection::scansChanged, this, &DepthImagePanel::refreshScan);
-  connect(&workspace.session(), &ProjectSession::snapshotReplaced, this, &DepthImagePanel::refreshScan);
   connect(&workspace.selection(), &Selection::hoveredChanged, this, &DepthImagePanel::refreshMarks);
   connect(&workspace.selection(), &Selection::pickedChanged, this, &DepthImagePanel::refreshMarks);
-  connect(&workspace.residuals(), &Residuals::changed, this, &DepthImagePanel::refreshResiduals);
-  connect(&workspace.display(), &ScanDisplay::stageChanged, this, &DepthImagePanel::refreshResiduals);
+  connect(&workspace.preferences(), &Preferences::unitsChanged, this, &DepthImagePanel::refreshReadout);
+  connect(model_, &DepthModel::wantedChanged, this, &DepthImagePanel::refreshImages);
+  connect(model_, &DepthModel::imagesChanged, this, &DepthImagePanel::refreshImages);
+  connect(model_, &DepthModel::scanChanged, this, &DepthImagePanel::refreshMarks);
+  model_->setQuantity(0, quantity(0));
   showTwo(two_->isChecked());
-  refreshScan();
+  refreshImages();
 }
 
 void DepthImagePanel::buildBar() {
@@ -149,8 +144,7 @@ void DepthImagePanel::buildBar() {
     connect(box, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this, side] {
       context_.workspace.preferences().setText(QString("depth/quantity-%1").arg(side),
                                                quantities_[side]->currentData().toString());
-      refreshSide(side);
-      refreshRange();
+      if (side == 0 || isTwofold()) model_->setQuantity(static_cast<std::size_t>(side), quantity(side));
     });
   }
   const auto button = [&](const QString& name, const QString& text, const QString& tip, bool checkable) {
@@ -193,7 +187,7 @@ void DepthImagePanel::buildBar() {
   connect(save, &QToolButton::clicked, this, [this] {
     askForFiles(this, context_.workspace.preferences(),
                 {FileQuestion::Save, "Save depth image", "Pictures (*.png)", "png", "pictures",
-                 QString("scan-%1-depth.png").arg(index_)},
+                 QString("scan-%1-depth.png").arg(model_->index())},
                 [this](const QStringList& files) {
                   if (const Status status = writePicture(files.front()); !status)
                     context_.workspace.messages().error(status.error());
@@ -224,99 +218,19 @@ void DepthImagePanel::showTwo(bool two) {
   context_.workspace.preferences().setText("depth/two", two ? "1" : "0");
   quantities_[1]->setVisible(two);
   views_[1]->setVisible(two);
-  if (two) refreshSide(1);
+  model_->setQuantity(1, two ? std::optional(quantity(1)) : std::nullopt);
   refreshRange();
 }
 
-std::shared_ptr<const DepthImage> DepthImagePanel::imageOf(DepthQuantity shown, QString& trouble) const {
-  if (!image_) return nullptr;
-  ResidualsPtr residuals;
-  if (shown == DepthQuantity::Residual) {
-    Workspace& workspace = context_.workspace;
-    const Stage stage = workspace.display().stage();
-    residuals = workspace.residuals().of(*scan_, stage);
-    if (!residuals) {
-      const std::string why = workspace.residuals().trouble(*scan_, stage);
-      trouble = why.empty() ? "Computing the residuals…" : qt(why);
-      return nullptr;
-    }
-  }
-  auto depth = depthImageOf(image_, geometry_, shown, residuals ? *residuals : std::vector<float>());
-  if (depth) return std::make_shared<const DepthImage>(std::move(*depth));
-  trouble = qt(depth.error().what) + ": " + qt(depth.error().remedy);
-  return nullptr;
-}
-
-void DepthImagePanel::refreshSide(int side) {
-  if (side == 1 && !isTwofold()) return;
-  QString trouble;
-  auto depth = imageOf(quantity(side), trouble);
-  views_[side]->setImage(depth, trouble);
-  QString text;
-  for (const DepthView* view : views_)
-    if (const DepthImage* image = view->image();
-        image && image->quantity == DepthQuantity::Changed && (view == views_[0] || isTwofold()))
-      text = QString("Changed by the 3 × 3 median: %1 cells, mean change %2 m")
-                 .arg(qt(groupedInteger(static_cast<long long>(image->changed))),
-                      number(image->mean_change_m, 2));
-    else if (image && image->quantity == DepthQuantity::Residual && (view == views_[0] || isTwofold()))
-      text = image->overlapping == 0
-                 ? QString("Residual, %1: no cell overlaps another scan")
-                       .arg(stageTitle(context_.workspace.display().stage()))
-                 : QString("Residual, %1: median %2 mm over %3 cells that overlap other scans")
-                       .arg(stageTitle(context_.workspace.display().stage()),
-                            number(1e3 * image->median_residual_m, 1),
-                            qt(groupedInteger(static_cast<long long>(image->overlapping))));
+void DepthImagePanel::refreshImages() {
+  bar_->setEnabled(model_->hasScan());
+  pages_->setCurrentIndex(model_->hasScan() ? 1 : 0);
+  for (std::size_t side = 0; side < 2; ++side)
+    views_[side]->setImage(model_->image(side), model_->trouble(side));
+  const QString text = model_->summary();
   changed_->setText(text);
   changed_->setVisible(!text.isEmpty());
-}
-
-void DepthImagePanel::refreshResiduals() {
-  bool any = false;
-  for (int side = 0; side < 2; ++side)
-    if (image_ && quantity(side) == DepthQuantity::Residual && (side == 0 || isTwofold())) {
-      refreshSide(side);
-      any = true;
-    }
-  if (any) refreshRange();
-}
-
-void DepthImagePanel::refreshScan() {
-  const SnapshotPtr snapshot = context_.workspace.snapshot();
-  const auto current = context_.workspace.selection().currentScan();
-  const ScanEntry* scan = snapshot && current ? snapshot->find(*current) : nullptr;
-  if (!scan && snapshot && !snapshot->scans().empty()) scan = &snapshot->scans().front();
-  bar_->setEnabled(scan);
-  pages_->setCurrentIndex(scan ? 1 : 0);
-  if (!scan) {
-    scan_.reset();
-    image_ = nullptr;
-    for (DepthView* view : views_) view->setImage(nullptr);
-    refreshMarks();
-    return;
-  }
-  index_ = snapshot->indexOf(scan->id).value_or(0);
-  const bool same =
-      scan_ == scan->id && matrix_ == scan->matrix && geometry_id_ == scan->geometry_id && image_;
-  scan_ = scan->id;
-  matrix_ = scan->matrix;
-  geometry_id_ = scan->geometry_id;
-  geometry_ = scan->geometry;
-  if (!same) {
-    points_.clear();
-    normals_.clear();
-    const auto image = scan->image();
-    image_ = image ? *image : nullptr;
-    if (image) {
-      points_ = cellPoints(*image_, geometry_);
-      normals_ = matrixNormals(*image_, points_);
-      for (int side = 0; side < 2; ++side) refreshSide(side);
-    } else {
-      for (DepthView* view : views_)
-        view->setImage(nullptr, qt(image.error().what) + ": " + qt(image.error().remedy));
-    }
-    refreshRange();
-  }
+  refreshRange();
   refreshMarks();
 }
 
@@ -368,8 +282,7 @@ void DepthImagePanel::takeRange() {
 void DepthImagePanel::refreshMarks() {
   const Selection& selection = context_.workspace.selection();
   const auto here = [&](const std::optional<CellPlace>& cell) {
-    return cell && scan_ && cell->scan == *scan_ ? std::optional(MatrixCell{cell->row, cell->column})
-                                                 : std::nullopt;
+    return cell && model_->hasCell(*cell) ? std::optional(MatrixCell{cell->row, cell->column}) : std::nullopt;
   };
   for (DepthView* view : views_) view->setMarks(here(selection.hovered()), here(selection.picked()));
   refreshReadout();
@@ -378,35 +291,10 @@ void DepthImagePanel::refreshMarks() {
 void DepthImagePanel::refreshReadout() {
   const Selection& selection = context_.workspace.selection();
   const auto cell = selection.hovered() ? selection.hovered() : selection.picked();
-  if (!cell || !image_ || !scan_ || cell->scan != *scan_ || cell->row >= image_->rows() ||
-      cell->column >= image_->columns()) {
-    readout_->setText(image_ ? "Point at a cell to read it; click marks it in 3D." : QString());
-    return;
-  }
-  const LengthUnit unit = context_.workspace.preferences().lengthUnit();
-  QString text = QString("Row %1, column %2").arg(cell->row).arg(cell->column);
-  if (image_->isRegular())
-    text += QString("   tilt %1°, azimuth %2°")
-                .arg(number(image_->lineTilt(cell->row) / kDegree, 2),
-                     number(geometry_.azimuthOfColumn(cell->column) / kDegree, 2));
-  const std::size_t k = image_->index(cell->row, cell->column);
-  if (!image_->hasPoint(k)) {
-    readout_->setText(text + "   " + qt(cellCodeText(image_->code(k))));
-    return;
-  }
-  text += "   range " + lengthText(image_->range(k), unit);
-  text += QString("   point (%1, %2, %3) %4")
-              .arg(lengthNumber(points_[k].x(), unit), lengthNumber(points_[k].y(), unit),
-                   lengthNumber(points_[k].z(), unit), unitName(unit));
-  for (const DepthView* view : views_)
-    if (const DepthImage* shown = view->image();
-        shown && shown->quantity == DepthQuantity::Residual && std::isfinite(shown->value[k])) {
-      text += "   residual " + smallLengthText(shown->value[k], unit);
-      break;
-    }
-  text += normals_[k].isZero() ? "   no normal" : "   normal " + vectorText(normals_[k], 2);
-  if (image_->hasIntensity()) text += "   intensity " + number(image_->intensity(k), 0);
-  readout_->setText(text);
+  const bool here = cell && model_->hasCell(*cell);
+  readout_->setText(here             ? model_->readout(*cell)
+                    : model_->scan() ? QString("Point at a cell to read it; click marks it in 3D.")
+                                     : QString());
 }
 
 Status DepthImagePanel::writePicture(const QString& file) const {
@@ -416,7 +304,7 @@ Status DepthImagePanel::writePicture(const QString& file) const {
     if (!image) return fail("there is no depth image to save", "depth image", "choose a scan with a matrix");
     DepthFigureSettings settings;
     settings.background = context_.theme.isDark() ? TopViewBackground::Dark : TopViewBackground::White;
-    settings.title = "Scan " + std::to_string(index_);
+    settings.title = "Scan " + std::to_string(model_->index());
     settings.range = views_[side]->range();
     auto figure = drawDepthFigure(*image, settings);
     if (!figure) return fail(figure.error());

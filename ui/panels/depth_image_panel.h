@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/project/project_snapshot.h"
+#include "ui/models/depth_model.h"
 #include "ui/panels/depth_view.h"
 #include "ui/panels/panel.h"
 
@@ -26,14 +26,13 @@ class DepthImagePanel : public QWidget {
   DepthView& view(int side) { return *views_[side]; }
   bool isTwofold() const;
   QString readout() const;
+  bool isReading() const { return model_->isReading(); }
   // Both images as shown, with axes and colour bars.
   Status writePicture(const QString& file) const;
 
  private:
   void buildBar();
-  void refreshScan();  // another scan, or its matrix changed
-  void refreshSide(int side);
-  void refreshResiduals();
+  void refreshImages();
   void refreshRange();
   void refreshMarks();
   void refreshReadout();
@@ -41,15 +40,9 @@ class DepthImagePanel : public QWidget {
   void takeRange();
   void showTwo(bool two);
   DepthQuantity quantity(int side) const;
-  std::shared_ptr<const DepthImage> imageOf(DepthQuantity quantity, QString& trouble) const;
 
   PanelContext context_;
-  std::optional<ScanId> scan_;
-  std::size_t index_ = 0;
-  std::int64_t matrix_ = 0, geometry_id_ = 0;
-  ScannerGeometry geometry_;
-  RangeImagePtr image_;
-  std::vector<Eigen::Vector3d> points_, normals_;
+  DepthModel* model_;
   std::optional<std::pair<double, double>> locked_;  // of quantities in locked_unit_
   std::string locked_unit_;
   bool filling_ = false;

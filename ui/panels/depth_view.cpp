@@ -31,6 +31,7 @@ DepthView::DepthView(const Theme& theme, QWidget* parent) : QWidget(parent), the
 }
 
 void DepthView::setImage(std::shared_ptr<const DepthImage> image, const QString& message) {
+  if (image == image_ && message == message_) return;
   image_ = std::move(image);
   message_ = message;
   redraw();
@@ -165,7 +166,7 @@ void DepthView::paintAxes(QPainter& painter, const QRectF& seen, const QRectF& a
   }
   const auto [y_low, y_high] = span(image_->tilt, image_->rows, (seen.top() - all.top()) / all.height(),
                                     (seen.bottom() - all.top()) / all.height(), image_->rowsTurned());
-  for (const double value : axisTicks(y_low, y_high, std::max(2, static_cast<int>(seen.height() / 36.0)))) {
+  for (const double value : axisTicks(y_low, y_high, std::max(2, static_cast<int>(seen.height() / 28.0)))) {
     const double y =
         all.top() + share(image_->tilt, image_->rows, value, image_->rowsTurned()) * all.height();
     painter.drawLine(QPointF(seen.left() - 5, y), QPointF(seen.left() - 1, y));
@@ -191,7 +192,7 @@ void DepthView::paintBar(QPainter& painter, const QRectF& seen) const {
   if (!image_->unit.empty())
     painter.drawText(QRectF(bar.left() - 2, bar.top() - metrics.height() - 2, 50, metrics.height()),
                      Qt::AlignLeft | Qt::AlignVCenter, qt(image_->unit));
-  for (const double value : axisTicks(low, high, std::max(2, static_cast<int>(bar.height() / 40.0)))) {
+  for (const double value : axisTicks(low, high, std::max(2, static_cast<int>(bar.height() / 28.0)))) {
     const double y = bar.bottom() - (value - low) / (high - low) * bar.height();
     painter.drawLine(QPointF(bar.right(), y), QPointF(bar.right() + 3, y));
     painter.drawText(QRectF(bar.right() + 6, y - 10, 40, 20), Qt::AlignLeft | Qt::AlignVCenter,

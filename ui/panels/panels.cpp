@@ -7,6 +7,7 @@
 #include "ui/panels/localisation_panel.h"
 #include "ui/panels/log_panel.h"
 #include "ui/panels/panel.h"
+#include "ui/panels/photographs_panel.h"
 #include "ui/panels/project_tree_panel.h"
 #include "ui/panels/relaxation_panel.h"
 #include "ui/panels/site_map_panel.h"
@@ -42,10 +43,12 @@ const std::vector<PanelInfo>& panels() {
       {"links", "Links", "link", "Every link with its figures, the worst first", make<LinksPanel>},
       {"stepper", "ICP stepper", "register-pair", "Two scans registered one iteration after the other",
        make<StepperPanel>},
-      {"stepper-view", "Registration view", "draw-cuboid",
-       "The stepper's two scans and their pairs in space", make<StepperViewPanel>},
+      {"stepper-view", "Registration view", "draw-cuboid", "The stepper's two scans and their pairs in space",
+       make<StepperViewPanel>},
       {"stepper-plots", "Registration plots", "office-chart-line",
        "Convergence, pairs and residuals of the stepper", make<StepperPlotsPanel>},
+      {"photographs", "Photographs", "camera-photo", "The photographs of a stop: see, add and remove them",
+       make<PhotographsPanel>},
       {"history", "History", "view-history", "Every edit of the project, and a way back to it",
        make<HistoryPanel>},
       {"log", "Log", "text-x-log", "What the program did, line by line", make<LogPanel>},

@@ -31,10 +31,13 @@ ProjectTreePanel::ProjectTreePanel(const PanelContext& context, QWidget* parent)
   view_->setAlternatingRowColors(false);
   view_->setUniformRowHeights(true);
   view_->setFrameShape(QFrame::NoFrame);
-  view_->setIndentation(16);
+  view_->setIndentation(12);
   view_->setHeaderHidden(true);
-  view_->header()->setStretchLastSection(true);
+  // The figures give way in a narrow panel; the names do not.
+  view_->header()->setMinimumSectionSize(24);
+  view_->header()->setStretchLastSection(false);
   view_->header()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
+  view_->header()->setSectionResizeMode(1, QHeaderView::Stretch);
   view_->installEventFilter(this);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -119,6 +122,7 @@ void ProjectTreePanel::showMenu(const QPoint& at) {
                       "",
                       "edit.rename",
                       "edit.note",
+                      "edit.photograph",
                       "edit.colour",
                       "edit.colour-default",
                       "edit.move-up",
@@ -165,8 +169,7 @@ void ProjectTreePanel::beginRename() {
 bool ProjectTreePanel::eventFilter(QObject* watched, QEvent* event) {
   if (event->type() == QEvent::KeyPress) {
     const auto* key = static_cast<QKeyEvent*>(event);
-    if (key->key() == Qt::Key_Return) activate(view_->currentIndex());
-    activate(view_->currentIndex());
+    if (key->key() == Qt::Key_Return || key->key() == Qt::Key_Enter) activate(view_->currentIndex());
   }
   return QWidget::eventFilter(watched, event);
 }

@@ -55,6 +55,7 @@ class SiteMapView : public QWidget {
   void drawGrid(QPainter& painter) const;
   void drawLinks(QPainter& painter) const;
   void drawStops(QPainter& painter) const;
+  void drawNumbers(QPainter& painter) const;
   void drawPlacing(QPainter& painter) const;
   void drawScale(QPainter& painter) const;
   void drawNorth(QPainter& painter) const;

@@ -34,10 +34,14 @@ Rgb rgbOf(const QColor& colour) {
           static_cast<std::uint8_t>(colour.blue())};
 }
 
+// What takes but a moment is not worth a word.
+constexpr int kMoment_ms = 300;
+
 }  // namespace
 
 View3dPanel::View3dPanel(const PanelContext& context, QWidget* parent)
     : QWidget(parent), context_(context), scene_(std::make_unique<Scene>()) {
+  scene_->setReadsItself(false);
   view_ = new SceneWidget(*scene_, this);
   describe(view_, "view3d-view", "3D view of the scans",
            "Drag turns, right or Shift-drag shifts, wheel zooms, click picks a point.\n"
@@ -66,6 +70,16 @@ View3dPanel::View3dPanel(const PanelContext& context, QWidget* parent)
   Workspace& workspace = context.workspace;
   connect(&workspace.session(), &ProjectSession::snapshotReplaced, this, &View3dPanel::refreshScans);
   connect(&workspace.session(), &ProjectSession::opened, this, [this] { scene_->setView(SceneView::Iso); });
+  connect(&workspace.session(), &ProjectSession::closed, &reader_, &PointReader::forget);
+  connect(&reader_, &PointReader::arrived, this, [this] {
+    scene_->give(reader_.take());
+    view_->drawSoon();
+  });
+  connect(&reader_, &PointReader::failed, this, [this](const PointReader::Trouble& trouble) {
+    context_.workspace.messages().error(
+        {trouble.scan + " cannot be drawn: " + trouble.error.what, "3D view", trouble.error.remedy});
+  });
+  connect(&reader_, &PointReader::progressed, this, &View3dPanel::refreshComputing);
   connect(&workspace.display(), &ScanDisplay::stageChanged, this, &View3dPanel::refreshScans);
   connect(&workspace.display(), &ScanDisplay::placedChanged, this, &View3dPanel::refreshScans);
   connect(&workspace.display(), &ScanDisplay::visibilityChanged, this, [this] {
@@ -147,7 +161,7 @@ void View3dPanel::buildBar() {
   bar_ = new QWidget(this);
   auto* layout = new FlowLayout(bar_);
   layout->setContentsMargins(8, 4, 8, 4);
-  layout->setSpacing(8);
+  layout->setSpacing(4);
 
   colouring_ = new QComboBox(bar_);
   describe(colouring_, "view3d-colouring", "Colours of the points", "What the colours of the points show");
@@ -277,7 +291,8 @@ void View3dPanel::applySettings() {
   settings.path = path_->isChecked();
   settings.grid = grid_->isChecked();
   settings.shaded = shaded_->isChecked();
-  tellTroubles(scene_->setSettings(settings));
+  (void)scene_->setSettings(settings);  // reads nothing itself
+  readMissing();
   Preferences& preferences = context_.workspace.preferences();
   preferences.setText("view3d/colouring", colouring_->currentData().toString());
   preferences.setText("view3d/points", points_->currentData().toString());
@@ -302,7 +317,7 @@ void View3dPanel::applyTheme() {
 void View3dPanel::refreshResiduals() {
   const SnapshotPtr snapshot = context_.workspace.snapshot();
   if (!snapshot || scene_->settings().colouring != SceneColouring::Residual) {
-    computing_->hide();
+    refreshComputing();
     return;
   }
   Residuals& residuals = context_.workspace.residuals();
@@ -310,9 +325,7 @@ void View3dPanel::refreshResiduals() {
   const ScanResiduals now = residuals.ofAll(stage);
   const bool both = scene_->compare() != SceneCompare::Off;
   scene_->setResiduals(now, both ? residuals.ofAll(scene_->before()) : ScanResiduals());
-  const int wanted = residuals.wanted();
-  computing_->setText(QString("Computing residuals: %1 to go…").arg(wanted));
-  computing_->setVisible(wanted > 0);
+  refreshComputing();
   view_->drawSoon();
 }
 
@@ -332,7 +345,8 @@ void View3dPanel::refreshScans() {
   refreshStages();
   const ScanDisplay& display = context_.workspace.display();
   const Stage stage = snapshot ? display.placedStage() : Stage::Odometry;
-  tellTroubles(scene_->show(display.placed(), stage));
+  (void)scene_->show(display.placed(), stage);
+  readMissing();
   compare_bar_->setStages(display.placed(), stage);
   refreshResiduals();
   const bool some = snapshot && !snapshot->scans().empty();
@@ -341,10 +355,25 @@ void View3dPanel::refreshScans() {
   view_->drawSoon();
 }
 
-void View3dPanel::tellTroubles(const std::vector<std::string>& troubles) {
-  if (troubles.empty()) return;
-  context_.workspace.messages().error({"some scans cannot be drawn: " + troubles.front(), "3D view",
-                                       "verify the project file (Project, Verify)"});
+void View3dPanel::readMissing() {
+  const bool was = reader_.isReading();
+  reader_.want(scene_->missing());
+  if (was || !reader_.isReading()) return;
+  reading_since_.start();
+  QTimer::singleShot(kMoment_ms + 1, this, &View3dPanel::refreshComputing);
+}
+
+void View3dPanel::refreshComputing() {
+  const bool shows_residuals =
+      context_.workspace.snapshot() && scene_->settings().colouring == SceneColouring::Residual;
+  const int residuals = shows_residuals ? context_.workspace.residuals().wanted() : 0;
+  QString text;
+  if (reader_.isReading() && reading_since_.isValid() && reading_since_.elapsed() > kMoment_ms)
+    text = QString("Reading scans: %1 of %2…").arg(reader_.done()).arg(reader_.total());
+  else if (residuals > 0)
+    text = QString("Computing residuals: %1 to go…").arg(residuals);
+  computing_->setText(text);
+  computing_->setVisible(!text.isEmpty());
 }
 
 Status View3dPanel::writePicture(const QString& file, const QSize& size, bool on_white) {

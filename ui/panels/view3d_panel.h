@@ -1,11 +1,13 @@
 // The scans in 3D.
 #pragma once
 
+#include <QElapsedTimer>
 #include <QTimer>
 #include <QWidget>
 #include <memory>
 
 #include "ui/panels/panel.h"
+#include "ui/scene/point_reader.h"
 #include "ui/scene/scene.h"
 
 class QComboBox;
@@ -35,6 +37,9 @@ class View3dPanel : public QWidget {
   QImage picture();
   // The same at any size, as a PNG file.
   Status writePicture(const QString& file, const QSize& size, bool on_white);
+  // Points that are not drawn yet are read in the background.
+  bool isReading() const { return reader_.isReading(); }
+  PointReader& reader() { return reader_; }
   CompareBar& compareBar() { return *compare_bar_; }
 
  private:
@@ -44,13 +49,16 @@ class View3dPanel : public QWidget {
   void applySettings();
   void applyTheme();
   void refreshResiduals();
+  void readMissing();
+  void refreshComputing();
   void askForPicture();
   SceneColours usualColours() const;
   void takeClick(const QPointF& place);
-  void tellTroubles(const std::vector<std::string>& troubles);
 
   PanelContext context_;
   std::unique_ptr<Scene> scene_;
+  PointReader reader_;
+  QElapsedTimer reading_since_;
   SceneWidget* view_;
   QWidget* empty_;
   QStackedLayout* pages_;

@@ -146,7 +146,22 @@ Result<ScanPoints> scanPointsOf(const ScanEntry& scan, bool reduced) {
   return result;
 }
 
+PointsKey keyOf(const PointsWanted& wanted) {
+  return {wanted.scan.id, wanted.scan.matrix, wanted.scan.geometry_id, wanted.reduced, wanted.normals};
+}
+
+PointsKey keyOf(const ScanPoints& points) {
+  return {points.scan, points.matrix, points.geometry, points.reduced, points.with_normals};
+}
+
+Result<ScanPoints> readPoints(const PointsWanted& wanted, const std::stop_token& stop) {
+  auto points = scanPointsOf(wanted.scan, wanted.reduced);
+  if (points && wanted.normals && !stop.stop_requested()) addNormals(*points, wanted.scan);
+  return points;
+}
+
 void addNormals(ScanPoints& points, const ScanEntry& scan) {
+  points.with_normals = true;
   if (!points.normal.empty() || points.size() == 0) return;
   points.normal.assign(points.xyz.size(), 0.0F);
   const auto image = scan.image();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,6 +29,7 @@ struct ScanPoints {
   std::int64_t matrix = 0;  // identity of what they were made from
   std::int64_t geometry = 0;
   bool reduced = false;
+  bool with_normals = false;
   int columns = 0;
   std::vector<float> xyz;           // three a point
   std::vector<std::uint32_t> cell;  // row-major
@@ -46,6 +48,26 @@ inline constexpr double kReducedDistance_m = 0.25;  // neighbours of a line near
 // Error: the project's file cannot be read.
 Result<ScanPoints> scanPointsOf(const ScanEntry& scan, bool reduced);
 void addNormals(ScanPoints& points, const ScanEntry& scan);
+
+// Points of one scan that somebody has to read.
+struct PointsWanted {
+  ScanEntry scan;
+  bool reduced = false;
+  bool normals = false;
+};
+// Points with the same key are the same, within a project.
+struct PointsKey {
+  ScanId scan = 0;
+  std::int64_t matrix = 0;
+  std::int64_t geometry = 0;
+  bool reduced = false;
+  bool normals = false;
+  auto operator<=>(const PointsKey&) const = default;
+};
+PointsKey keyOf(const PointsWanted& wanted);
+PointsKey keyOf(const ScanPoints& points);
+// scanPointsOf() and, where wanted, addNormals(). Stopped: what it has by then.
+Result<ScanPoints> readPoints(const PointsWanted& wanted, const std::stop_token& stop);
 
 // What colours mean, over all scans that are shown.
 struct ColourRange {

@@ -12,9 +12,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr Rgb kHoverColour{255, 170, 40};
-constexpr Rgb kPickColour{255, 90, 200};
-
 // Making a context current may change its viewport (Qt's platform without a screen sets one pixel), and VTK
 // makes it current in the middle of drawing without noticing that. What it believes is put back.
 void keepViewport(vtkObject* caller, unsigned long, void*, void*) {
@@ -83,45 +80,33 @@ std::vector<std::string> Scene::show(const SnapshotPtr& snapshot, Stage stage) {
   p.clouds.clear();
   p.snapshot = snapshot;
   p.stage = stage;
-  std::vector<std::string> troubles;
-  const std::size_t count = snapshot ? snapshot->scans().size() : 0;
-  std::vector<std::unique_ptr<SceneCloud>> made(count);
-  std::vector<std::string> trouble(count);
-  parallelFor(count, 0, [&](std::size_t i) {
-    const ScanEntry& scan = snapshot->scans()[i];
-    const auto known = before.find(scan.id);
-    if (known != before.end() && known->second->points.matrix == scan.matrix &&
-        known->second->points.geometry == scan.geometry_id &&
-        known->second->points.reduced == p.settings.reduced)
-      return;
-    auto points = scanPointsOf(scan, p.settings.reduced);
-    if (!points) {
-      trouble[i] = scan.name + ": " + points.error().what;
-      return;
-    }
-    made[i] = std::make_unique<SceneCloud>();
-    made[i]->points = std::move(*points);
-    made[i]->encircle();
-  });
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!trouble[i].empty()) {
-      troubles.push_back(trouble[i]);
-      continue;
-    }
-    const ScanEntry& scan = snapshot->scans()[i];
-    if (!made[i]) made[i] = std::move(before[scan.id]);
-    made[i]->index = i;
-    made[i]->batch.visible = !p.is_visible || p.is_visible(scan.id);
-    p.clouds.push_back(std::move(made[i]));
+  for (std::size_t i = 0; snapshot && i < snapshot->scans().size(); ++i) {
+    const auto known = before.find(snapshot->scans()[i].id);
+    if (known == before.end()) continue;
+    known->second->index = i;
+    p.clouds.push_back(std::move(known->second));
   }
-  p.placeClouds();
-  p.colourAll();
-  p.placeLines();
-  p.showActors();
-  p.fitNow();
-  markHovered(p.hovered_cell);
-  markPicked(p.picked_cell);
+  std::vector<std::string> troubles;
+  if (snapshot && p.reads_itself) troubles = p.readMissing();
+  p.showClouds();
   return troubles;
+}
+
+void Scene::setReadsItself(bool itself) {
+  parts_->reads_itself = itself;
+}
+
+std::vector<PointsWanted> Scene::missing() const {
+  const Parts& p = *parts_;
+  std::vector<PointsWanted> wanted;
+  for (std::size_t i = 0; p.snapshot && i < p.snapshot->scans().size(); ++i)
+    if (!p.has(i)) wanted.push_back(p.wanted(i));
+  return wanted;
+}
+
+void Scene::give(std::vector<ScanPoints> points) {
+  parts_->takeIn(std::move(points));
+  parts_->showClouds();
 }
 
 std::vector<std::string> Scene::setSettings(const SceneSettings& settings) {

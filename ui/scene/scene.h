@@ -76,10 +76,15 @@ class Scene {
   void detach();
   vtkRenderer& renderer();
 
-  // What is drawn. Scans that did not change keep their points. Returned: what could not be read.
+  // What is drawn. Scans that did not change keep their points. Returned: what could not be read. A scene
+  // whose points come later (setReadsItself) draws those that it has; missing() tells what to give() it.
   std::vector<std::string> show(const SnapshotPtr& snapshot, Stage stage);
   std::vector<std::string> setSettings(const SceneSettings& settings);
   const SceneSettings& settings() const;
+  void setReadsItself(bool itself);
+  // Until a scan's new points are given, it is drawn with those that it had.
+  std::vector<PointsWanted> missing() const;
+  void give(std::vector<ScanPoints> points);
   void setColours(const SceneColours& colours);
   void setVisible(const std::function<bool(ScanId)>& visible);
   void setPixelRatio(double device_px_per_logical_px);

@@ -19,9 +19,15 @@ std::vector<Vector3d> Scene::Parts::extentPoints(const std::vector<ScanId>& scan
       if (within && !within->contains(p)) continue;
       for (std::size_t axis = 0; axis < 3; ++axis) along[axis].push_back(p[static_cast<int>(axis)]);
     }
-    const Vector3d stop = cloud->pose().translation();
-    if (within) continue;
-    for (std::size_t axis = 0; axis < 3; ++axis) along[axis].push_back(stop[static_cast<int>(axis)]);
+  }
+  // Stops of scans whose points are still to come, too.
+  for (std::size_t i = 0; !within && i < stops[0].size(); ++i) {
+    const ScanId scan = snapshot->scans()[i].id;
+    if (scans.empty() ? is_visible && !is_visible(scan)
+                      : std::find(scans.begin(), scans.end(), scan) == scans.end())
+      continue;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      along[axis].push_back(stops[0][i].translation()[static_cast<int>(axis)]);
   }
   if (along[0].empty()) return extra_extent;
   Vector3d low, high;
@@ -37,6 +43,63 @@ std::vector<Vector3d> Scene::Parts::extentPoints(const std::vector<ScanId>& scan
   for (int k = 0; k < 8; ++k)
     corners.emplace_back((k & 1 ? high : low).x(), (k & 2 ? high : low).y(), (k & 4 ? high : low).z());
   return corners;
+}
+
+bool Scene::Parts::has(std::size_t index) const {
+  const PointsKey key = keyOf(wanted(index));
+  const SceneCloud* cloud = cloudOf(key.scan);
+  return cloud && cloud->points.matrix == key.matrix && cloud->points.geometry == key.geometry &&
+         cloud->points.reduced == key.reduced && (!key.normals || cloud->points.with_normals);
+}
+
+// At once, on all cores. Scans that cannot be read are not drawn.
+std::vector<std::string> Scene::Parts::readMissing() {
+  const std::size_t count = snapshot->scans().size();
+  std::vector<std::optional<Result<ScanPoints>>> read(count);
+  parallelFor(count, 0, [&](std::size_t i) {
+    if (!has(i)) read[i] = readPoints(wanted(i), {});
+  });
+  std::vector<ScanPoints> points;
+  std::vector<std::string> troubles;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!read[i]) continue;
+    const ScanEntry& scan = snapshot->scans()[i];
+    if (*read[i])
+      points.push_back(std::move(**read[i]));
+    else
+      troubles.push_back(scan.name + ": " + read[i]->error().what);
+    std::erase_if(clouds, [&](const auto& cloud) { return cloud->points.scan == scan.id; });
+  }
+  takeIn(std::move(points));
+  return troubles;
+}
+
+void Scene::Parts::takeIn(std::vector<ScanPoints> points) {
+  for (ScanPoints& scan : points) {
+    const auto index = snapshot ? snapshot->indexOf(scan.scan) : std::nullopt;
+    if (!index) continue;
+    auto cloud = std::make_unique<SceneCloud>();
+    cloud->points = std::move(scan);
+    cloud->index = *index;
+    cloud->encircle();
+    const auto place = std::lower_bound(clouds.begin(), clouds.end(), *index,
+                                        [](const auto& other, std::size_t i) { return other->index < i; });
+    if (place != clouds.end() && (*place)->index == *index)
+      *place = std::move(cloud);
+    else
+      clouds.insert(place, std::move(cloud));
+  }
+}
+
+void Scene::Parts::showClouds() {
+  for (const auto& cloud : clouds) cloud->batch.visible = !is_visible || is_visible(cloud->points.scan);
+  placeClouds();
+  colourAll();
+  placeLines();
+  showActors();
+  fitNow();
+  mark(hovered, hovered_cell, kHoverColour);
+  mark(picked, picked_cell, kPickColour);
 }
 
 void SceneCloud::encircle() {
@@ -85,7 +148,8 @@ void Scene::Parts::colour(SceneCloud& cloud, int side, const std::vector<float>&
   if (settings.colouring == SceneColouring::Normal) {
     const Eigen::Matrix3d rotation = cloud.pose(side).rotation();
     result.reserve(cloud.points.size());
-    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    if (cloud.points.normal.empty()) result.assign(cloud.points.size(), colours.no_data);  // still to come
+    for (std::size_t i = 0; i < cloud.points.normal.size() / 3; ++i) {
       const Vector3d n = rotation * Vector3d(cloud.points.normal[3 * i], cloud.points.normal[3 * i + 1],
                                              cloud.points.normal[3 * i + 2]);
       const Vector3d c = 127.5 * (n.array() + 1.0);
@@ -130,7 +194,7 @@ void Scene::Parts::colourAll() {
                        settings.colouring == SceneColouring::Residual;
   const int sides = compare != SceneCompare::Off && by_pose ? 2 : 1;
   std::vector<std::array<std::vector<float>, 2>> values(clouds.size());
-  if (settings.colouring == SceneColouring::Normal)
+  if (wantsNormals() && reads_itself)
     parallelFor(clouds.size(), 0,
                 [&](std::size_t k) { addNormals(clouds[k]->points, snapshot->scans()[clouds[k]->index]); });
   parallelFor(clouds.size(), 0, [&](std::size_t k) {

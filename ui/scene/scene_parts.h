@@ -33,6 +33,9 @@
 
 namespace tiltmap::ui {
 
+inline constexpr Rgb kHoverColour{255, 170, 40};
+inline constexpr Rgb kPickColour{255, 90, 200};
+
 inline void paint(vtkActor& actor, Rgb colour) {
   actor.GetProperty()->SetColor(colour.r / 255.0, colour.g / 255.0, colour.b / 255.0);
 }
@@ -89,13 +92,13 @@ struct Scene::Parts {
   SceneColours colours;
   double pixel_ratio = 1.0;
   bool moving = false;
+  bool reads_itself = true;
   std::size_t budget = kMovingPoints;
   std::uint64_t content = 0;  // counts what the pictures of the points depend on
   std::function<bool(ScanId)> is_visible;
   std::array<ScanResiduals, 2> residuals;
-  std::vector<std::unique_ptr<SceneCloud>>
-      clouds;                              // in the survey's order; none for scans that cannot be read
-  std::array<std::vector<Pose>, 2> stops;  // by side: as shown, and what it is compared with
+  std::vector<std::unique_ptr<SceneCloud>> clouds;  // in the survey's order; none for scans without points
+  std::array<std::vector<Pose>, 2> stops;           // by side: as shown, and what it is compared with
   ColourRange range;
   double grid_m = 0.0;
   vtkNew<PointLayer> layer;
@@ -150,6 +153,14 @@ struct Scene::Parts {
     if (compare == SceneCompare::Wipe) return pixel_x < divider * size().x() ? 1 : 0;
     return compare == SceneCompare::Blink && shows_before ? 1 : 0;
   }
+  bool wantsNormals() const { return settings.colouring == SceneColouring::Normal; }
+  PointsWanted wanted(std::size_t index) const {
+    return {snapshot->scans()[index], settings.reduced, wantsNormals()};
+  }
+  bool has(std::size_t index) const;  // its points as they are wanted
+  std::vector<std::string> readMissing();
+  void takeIn(std::vector<ScanPoints> points);
+  void showClouds();
   std::vector<Eigen::Vector3d> extentPoints(const std::vector<ScanId>& scans, const PointBox* within) const;
   void colourAll();
   void colour(SceneCloud& cloud, int side, const std::vector<float>& values);

@@ -16,7 +16,7 @@ namespace tiltmap::ui {
 namespace {
 
 // Of the saved layouts: raised when a stored arrangement would no longer make sense.
-constexpr int kLayoutVersion = 1;
+constexpr int kLayoutVersion = 2;
 
 ads::CDockManager* makeManager(QWidget* parent) {
   using Manager = ads::CDockManager;
@@ -148,6 +148,8 @@ void DockArea::arrange(Perspective perspective) {
       // As tabs: side by side they would ask for more width than a screen has before they are closed.
       manager_->addDockWidget(first.isEmpty() ? ads::RightDockWidgetArea : ads::CenterDockWidgetArea, dock,
                               first.isEmpty() ? nullptr : placed.at(first));
+      // One that was closed before counts as closed, and would keep the tab that it has been given.
+      dock->toggleView(true);
       dock->toggleView(false);
     }
   for (const auto& [id, area] : placed) area->setCurrentIndex(0);
@@ -195,6 +197,7 @@ void DockArea::restyle() {
     ads--CDockWidget { background: %3; border: none; }
     ads--CTitleBarButton { padding: 2px; border: none; background: transparent; }
     ads--CTitleBarButton:hover { background: %2; }
+    ads--CTitleBarButton::menu-indicator { image: none; }
     ads--CDockWidgetTab { background: transparent; border: none; border-bottom: 2px solid transparent;
                           padding: 4px 4px 2px 8px; min-height: 20px; }
     ads--CDockWidgetTab[activeTab="true"] { border-bottom: 2px solid %5; }

@@ -11,8 +11,10 @@
 
 #include "ui/look/icons.h"
 #include "ui/look/theme.h"
+#include "ui/models/photograph_model.h"
 #include "ui/models/strings.h"
 #include "ui/panels/details_panel.h"
+#include "ui/panels/photographs_panel.h"
 #include "ui/panels/project_tree_panel.h"
 #include "ui/window/about_dialog.h"
 #include "ui/window/colour_dialog.h"
@@ -221,6 +223,11 @@ void MainWindow::beginNote() {
   if (auto* details = qobject_cast<DetailsPanel*>(docks_->panel("details"))) details->beginNote();
 }
 
+void MainWindow::addPhotographs() {
+  showPanel("photographs");
+  if (auto* panel = qobject_cast<PhotographsPanel*>(docks_->panel("photographs"))) panel->askForFilesToAdd();
+}
+
 void MainWindow::closeNow() {
   workspace_->jobs().cancelAll();
   close();
@@ -236,13 +243,14 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     QString text = (job ? job->title : QString("Work")) +
                    (waits ? " waits to be accepted or discarded." : " is not finished.");
     if (queued > 0) text += QString(" %1 more %2 in the queue.").arg(queued).arg(queued == 1 ? "is" : "are");
-    workspace_->messages().show({MessageKind::Warning,
-                                 text,
-                                 QString("Closing now %1 it, and the project stays as it was before. Everything "
-                                         "that was accepted is stored.")
-                                     .arg(waits ? "discards" : "cancels"),
-                                 {},
-                                 "file.quit-cancelling"});
+    workspace_->messages().show(
+        {MessageKind::Warning,
+         text,
+         QString("Closing now %1 it, and the project stays as it was before. Everything "
+                 "that was accepted is stored.")
+             .arg(waits ? "discards" : "cancels"),
+         {},
+         "file.quit-cancelling"});
     event->ignore();
     return;
   }
@@ -268,23 +276,29 @@ void MainWindow::dropEvent(QDropEvent* event) {
 }
 
 void MainWindow::openDropped(const QStringList& files) {
-  QStringList scans;
+  QStringList scans, pictures;
   for (const QString& file : files) {
     if (file.endsWith(".tiltmap")) {
       (void)workspace_->session().open(file);
       return;
     }
-    scans << file;
+    (isPictureName(file) ? pictures : scans) << file;
   }
-  if (scans.isEmpty()) return;
+  if (files.isEmpty()) return;
   if (!workspace_->session().isWritable()) {
     workspace_->messages().show({MessageKind::Error,
-                                 "Scans cannot be added: no project is open for writing.",
+                                 "Nothing can be added: no project is open for writing.",
                                  "Make a project, then drop them again.",
                                  {},
                                  "file.new"});
     return;
   }
+  if (auto* panel = qobject_cast<PhotographsPanel*>(docks_->panel("photographs"));
+      panel && !pictures.isEmpty()) {
+    showPanel("photographs");
+    panel->add(pictures);
+  }
+  if (scans.isEmpty()) return;
   scans.sort();
   showOperation("import", {{"files", utf8(scans.join('\n'))}});
 }

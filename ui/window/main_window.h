@@ -52,6 +52,7 @@ class MainWindow : public QMainWindow, public WindowCommands {
   void closeNow() override;
   void beginRename() override;
   void beginNote() override;
+  void addPhotographs() override;
 
  protected:
   void closeEvent(QCloseEvent* event) override;

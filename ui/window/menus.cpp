@@ -45,9 +45,9 @@ void MainWindow::makeMenus() {
        {"file.demo", "", "op.import", "op.simulate", "op.merge", "", "file.save-as", "file.copy",
         "file.refresh", "file.compact", "file.verify", "", "file.close", "file.new-window", "file.quit"});
   fill(menuBar()->addMenu("&Edit"), actions_,
-       {"edit.undo", "edit.redo", "", "edit.rename", "edit.note", "edit.colour", "edit.colour-default",
-        "edit.move-up", "edit.move-down", "edit.rebase", "edit.delete", "", "edit.survey", "",
-        "edit.select-all", "", "edit.preferences"});
+       {"edit.undo", "edit.redo", "", "edit.rename", "edit.note", "edit.photograph", "edit.colour",
+        "edit.colour-default", "edit.move-up", "edit.move-down", "edit.rebase", "edit.delete", "",
+        "edit.survey", "", "edit.select-all", "", "edit.preferences"});
   QMenu* view = menuBar()->addMenu("&View");
   fill(view, actions_,
        {"perspective.capture", "perspective.inspect", "perspective.register", "perspective.relax", ""});
@@ -59,12 +59,14 @@ void MainWindow::makeMenus() {
        {"stage.latest", "", "stage.truth", "stage.odometry", "stage.pairwise", "stage.relaxed", "",
         "stage.clear"});
   fill(view, actions_, {"", "view.show-all", "view.show-only", "view.show", "view.hide", "", "view.palette"});
-  fill(menuBar()->addMenu("&Capture"), actions_, {"file.capture", "op.capture", "", "op.import", "op.simulate"});
+  fill(menuBar()->addMenu("&Capture"), actions_,
+       {"file.capture", "op.capture", "", "op.import", "op.simulate"});
   QMenu* registering = menuBar()->addMenu("&Register");
   fill(registering, actions_, {"op.register", "op.rebase"});
   fill(registering, actions_, otherOperations());
   fill(registering, actions_,
-       {"", "stepper.open", "stepper.step", "stepper.back", "stepper.run", "stepper.accept", "stepper.discard"});
+       {"", "stepper.open", "stepper.step", "stepper.back", "stepper.run", "stepper.accept",
+        "stepper.discard"});
   fill(registering, actions_,
        {"", "link.show", "link.register", "link.accept", "link.disable", "link.enable"});
   fill(menuBar()->addMenu("Re&lax"), actions_,

@@ -38,6 +38,7 @@ std::vector<DockPlace> delivered(Perspective perspective) {
               {"project-tree", Left, "view3d", 0.24},
               {"details", Bottom, "project-tree", 0.45},
               {"depth-image", Bottom, "view3d", 0.40},
+              {"photographs", Tab, "depth-image", 0},
               {"log", Tab, "depth-image", 0}};
     case Perspective::Inspect:
       return {{"view3d", Left, "", 0},
@@ -45,8 +46,9 @@ std::vector<DockPlace> delivered(Perspective perspective) {
               {"details", Bottom, "project-tree", 0.45},
               {"depth-image", Bottom, "view3d", 0.45},
               {"localisation", Tab, "depth-image", 0},
-              {"history", Tab, "details", 0},
-              {"log", Tab, "details", 0}};
+              {"photographs", Tab, "depth-image", 0},
+              {"log", Tab, "depth-image", 0},
+              {"history", Tab, "details", 0}};
     case Perspective::Register:
       return {{"view3d", Left, "", 0},
               {"stepper-view", Tab, "view3d", 0},
@@ -56,17 +58,17 @@ std::vector<DockPlace> delivered(Perspective perspective) {
               {"stepper-plots", Bottom, "view3d", 0.34},
               {"depth-image", Tab, "stepper-plots", 0},
               {"localisation", Tab, "stepper-plots", 0},
-              {"history", Tab, "details", 0},
-              {"log", Tab, "details", 0}};
+              {"log", Tab, "stepper-plots", 0},
+              {"history", Tab, "details", 0}};
     case Perspective::Relax:
       return {{"view3d", Left, "", 0},
-              {"project-tree", Left, "view3d", 0.24},
+              {"project-tree", Left, "view3d", 0.34},
               {"relax", Right, "view3d", 0.42},
               {"sitemap", Bottom, "view3d", 0.52},
               {"links", Bottom, "relax", 0.45},
               {"localisation", Tab, "sitemap", 0},
-              {"history", Bottom, "project-tree", 0.40},
-              {"log", Tab, "history", 0}};
+              {"log", Tab, "sitemap", 0},
+              {"history", Bottom, "project-tree", 0.40}};
   }
   return {};
 }

@@ -5,6 +5,7 @@
 #include <QPainter>
 #include <QTemporaryDir>
 #include <QTimer>
+#include <algorithm>
 #include <cmath>
 
 #include "core/project/project.h"
@@ -12,7 +13,9 @@
 #include "ui/models/log.h"
 #include "ui/models/log_model.h"
 #include "ui/models/strings.h"
+#include "ui/panels/depth_image_panel.h"
 #include "ui/panels/scene_widget.h"
+#include "ui/panels/view3d_panel.h"
 #include "ui/window/dock_area.h"
 #include "ui/window/gui_application.h"
 #include "ui/window/main_window.h"
@@ -28,11 +31,22 @@ constexpr int kLargest_px = 8192;
 // What Qt says of a screen that is not there is no news.
 void keepQuiet(QtMsgType, const QMessageLogContext&, const QString&) {}
 
-// Timers of zero length, layouts and thumbnails that come in the next round of the event loop.
-void settle(const JobQueue& jobs) {
+// Timers of zero length, layouts and thumbnails that come in the next round of the event loop; points,
+// residuals and whatever else is read or computed aside.
+void settle(Workspace& workspace, const QWidget& shown) {
   QElapsedTimer clock;
   clock.start();
-  while (clock.elapsed() < 200 || (jobs.busy() && clock.elapsed() < 60000))
+  const auto reads = [&shown](auto* one_of) {
+    using Panel = std::remove_pointer_t<decltype(one_of)>;
+    const auto* itself = qobject_cast<const Panel*>(&shown);
+    return (itself && itself->isReading()) ||
+           std::ranges::any_of(shown.findChildren<Panel*>(), &Panel::isReading);
+  };
+  const auto busy = [&] {
+    return workspace.jobs().busy() || workspace.residuals().isComputing() ||
+           reads(static_cast<View3dPanel*>(nullptr)) || reads(static_cast<DepthImagePanel*>(nullptr));
+  };
+  while (clock.elapsed() < 200 || (busy() && clock.elapsed() < 60000))
     QApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 20);
 }
 
@@ -103,7 +117,7 @@ Result<QImage> shoot(MainWindow& window, const WindowScreenshot& settings) {
             step(window.workspace().stepper(), *window.workspace().snapshot(), *settings.stepped);
         !stepped)
       return fail(stepped.error());
-  settle(window.workspace().jobs());
+  settle(window.workspace(), window);
   if (settings.panel == "window") return pictureOf(window);
   for (const PanelInfo& info : panels()) {
     if (info.id != qt(settings.panel)) continue;
@@ -111,7 +125,7 @@ Result<QImage> shoot(MainWindow& window, const WindowScreenshot& settings) {
     panel->setAutoFillBackground(true);
     panel->resize(settings.width_px, settings.height_px);
     panel->show();
-    settle(window.workspace().jobs());
+    settle(window.workspace(), *panel);
     return pictureOf(*panel);
   }
   return fail("there is no panel \"" + settings.panel + "\"", "--panel", "choose one that the help names");
@@ -178,6 +192,8 @@ Result<RgbImage> windowScreenshot(const std::filesystem::path& project, const Wi
     sharedLogModel();
     Preferences preferences(folder.filePath("settings.ini"));
     preferences.setTheme(settings.theme);
+    preferences.setText("view3d/colouring", qt(settings.colouring));
+    preferences.setText("depth/quantity-0", qt(settings.quantity));
     const Theme theme(preferences);
     {
       // Deleted by hand: the window deletes itself only when it is closed.

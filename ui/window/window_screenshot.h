@@ -29,6 +29,8 @@ struct WindowScreenshot {
     std::optional<int> iteration;  // 0 is the start; nothing: the last
   };
   std::optional<Stepped> stepped;  // what the ICP stepper shows, run to its end
+  std::string colouring = "scan";  // of the 3D view, as its colour box has it
+  std::string quantity = "range";  // of the depth image
   std::optional<Stage> stage;      // whose poses place the scans; nothing: the latest
 };
 

@@ -7,6 +7,7 @@
 
 #include "core/base/text.h"
 #include "core/io/cloud_writer.h"
+#include "core/products/scan_colours.h"
 #include "core/project/operations/index_list.h"
 #include "core/project/stage_choice.h"
 #include "core/scan/reduction.h"
@@ -45,12 +46,14 @@ const ParameterTable<ExportSettings>& exportTable() {
               "Thin the points along the lines of each scan instead of writing all", "thesis 4.2.2.3");
     t.real("reduction-distance", &ExportSettings::reduction_distance_m, "m", 0.001, 100.0,
            "With reduced: neighbours in a line nearer than this become one", "thesis 4.2.2.3: 0.5 m");
-    t.choice<CloudColour>("colour", &ExportSettings::colour,
-                          {{"none", CloudColour::None},
-                           {"scan", CloudColour::Scan},
-                           {"height", CloudColour::Height},
-                           {"intensity", CloudColour::Intensity}},
-                          "Colour written with each point, in all formats but 3d", "ours");
+    t.choice<CloudColour>(
+        "colour", &ExportSettings::colour,
+        {{"none", CloudColour::None},
+         {"scan", CloudColour::Scan},
+         {"height", CloudColour::Height},
+         {"intensity", CloudColour::Intensity}},
+        "Colour written with each point, in all formats but 3d; by scan as every view and picture has it",
+        "ours");
     t.boolean(
         "double-precision", &ExportSettings::double_precision,
         "Coordinates as 8-byte floats in ply, pcd and vtk; PCL and Open3D read such ply, but not such pcd",
@@ -202,8 +205,12 @@ class ExportOperation : public SettingsOperation<ExportSettings> {
     cloud.scans = list.size();
     cloud.scan = [snapshot, list, poses, settings](std::size_t k) -> Result<ExportScan> {
       const auto index = static_cast<std::size_t>(list[k]);
-      return snapshot->scans()[index].scan().map(
-          [&](const Scan& scan) { return exported(scan, index, poses[index], settings); });
+      return snapshot->scans()[index].scan().map([&](const Scan& scan) {
+        ExportScan out = exported(scan, index, poses[index], settings);
+        const Rgb colour = scanColour(snapshot->scans()[index], index);
+        out.colour = {colour.r, colour.g, colour.b};
+        return out;
+      });
     };
     std::size_t points = 0;
     for (const int index : list) {

@@ -33,7 +33,7 @@ TEST_F(ItemModelsTest, TreeHoldsScansLinksAndStages) {
   EXPECT_EQ(tree.rowCount(links), 2);
   EXPECT_EQ(tree.rowCount(stages), 2);
   EXPECT_EQ(cell(tree, 1, 0, scans), "1  stop 2");
-  EXPECT_TRUE(cell(tree, 0, 1, links).contains("12.3 mm, overlap 61 %"));
+  EXPECT_TRUE(cell(tree, 0, 1, links).contains("12.3 mm, 61 % overlap"));
   EXPECT_EQ(cell(tree, 1, 0, stages), "Pairwise");
   EXPECT_TRUE(cell(tree, 1, 1, stages).contains("shown"));
   EXPECT_EQ(tree.itemAt(tree.indexOfScan(id(2)))->scan, id(2));

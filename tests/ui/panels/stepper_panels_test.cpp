@@ -18,6 +18,7 @@
 #include "tests/ui/support/picture_baseline.h"
 #include "tests/ui/support/window_fixture.h"
 #include "ui/models/study_model.h"
+#include "ui/panels/stepper_panel.h"
 #include "ui/panels/stepper_plots.h"
 #include "ui/panels/stepper_view_panel.h"
 
@@ -424,9 +425,12 @@ TEST_F(StepperPanelsTest, ThePanelsFitBesideEachOtherOnASmallScreen) {
 TEST_F(StepperPanelsTest, ThePanelLooksAsItDid) {
   preferences.setTheme(ui::ThemeChoice::Dark);
   for (int k = 0; k < 4; ++k) stepByMouse();
-  QWidget* panel = window->docks().panel("stepper");
-  const QImage picture = panel->grab().toImage().scaled(320, 480);
-  EXPECT_TRUE(looksLike(picture, "stepper-panel"));
+  ui::StepperPanel panel({workspace(), window->actions(), theme});
+  panel.setAutoFillBackground(true);
+  panel.resize(360, 720);
+  panel.show();
+  settle();
+  EXPECT_TRUE(looksLike(panel.grab().toImage(), "stepper-panel"));
 }
 
 }  // namespace

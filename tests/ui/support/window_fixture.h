@@ -12,6 +12,8 @@
 
 #include "tests/ui/models/model_samples.h"
 #include "ui/look/theme.h"
+#include "ui/panels/depth_image_panel.h"
+#include "ui/panels/view3d_panel.h"
 #include "ui/window/dock_area.h"
 #include "ui/window/main_window.h"
 
@@ -56,6 +58,16 @@ class WindowTest : public ::testing::Test {
   }
   void settle() {
     for (int i = 0; i < 3; ++i) QCoreApplication::processEvents();
+    // What is read aside is there at once for a person.
+    EXPECT_TRUE(waitUntil([] {
+      for (const QWidget* top : QApplication::topLevelWidgets())
+        for (const auto* view : top->findChildren<ui::View3dPanel*>())
+          if (view->isReading()) return false;
+      for (const QWidget* top : QApplication::topLevelWidgets())
+        for (const auto* panel : top->findChildren<ui::DepthImagePanel*>())
+          if (panel->isReading()) return false;
+      return true;
+    }));
   }
 
   template <class Widget = QWidget>

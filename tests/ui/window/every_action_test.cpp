@@ -224,6 +224,7 @@ std::vector<EveryAction::Row> EveryAction::rows() {
        [](T& t) { return !t.snapshot().scans()[1].colour; }},
       {"edit.rebase", registered,
        [](T& t) { return t.snapshot().scans()[1].odometry().translation().norm() < 1e-12; }},
+      {"edit.photograph", registered, [](T& t) { return t.asks("Add photographs"); }},
       {"edit.survey", registered, [](T& t) { return t.shows("survey"); }},
       {"edit.delete", registered, [](T& t) { return t.snapshot().scans().size() == 2; }},
       {"edit.move-up",

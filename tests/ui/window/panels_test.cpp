@@ -121,6 +121,45 @@ TEST_F(PanelsTest, DoubleClickOnAStageShowsIt) {
   EXPECT_EQ(workspace().display().stage(), Stage::Odometry);
 }
 
+// Only Enter and a double click do: keys that go through the tree change nothing.
+TEST_F(PanelsTest, OnlyEnterShowsTheStageThatKeysHaveReached) {
+  makeProject(2, true);
+  auto* tree = panel<ProjectTreePanel>("project-tree");
+  const QModelIndex group = tree->model().groupIndex(TreeItem::Kind::StagesGroup);
+  tree->view()->setCurrentIndex(group);
+  const Stage before = workspace().display().stage();
+  QTest::keyClick(tree->view(), Qt::Key_Down);
+  QTest::keyClick(tree->view(), Qt::Key_Shift);
+  settle();
+  ASSERT_EQ(tree->view()->currentIndex(), tree->model().index(0, 0, group));
+  EXPECT_EQ(workspace().display().stage(), before);
+  QTest::keyClick(tree->view(), Qt::Key_Return);
+  settle();
+  EXPECT_EQ(workspace().display().stage(), Stage::Odometry);
+}
+
+TEST_F(PanelsTest, APerspectiveShowsItsOwnPanelsHoweverOneCameThere) {
+  makeProject(2);
+  const auto tabs = [&] {
+    int visible = 0;
+    for (const auto* widget : window->findChildren<QWidget*>())
+      visible += widget->inherits("ads::CDockWidgetTab") && !widget->isHidden();
+    return visible;
+  };
+  for (const Perspective perspective : {Perspective::Capture, Perspective::Relax, Perspective::Register,
+                                        Perspective::Inspect, Perspective::Capture, Perspective::Register}) {
+    window->setPerspective(perspective);
+    settle();
+    EXPECT_EQ(tabs(), static_cast<int>(delivered(perspective).size()))
+        << perspectiveName(perspective).toStdString();
+    for (const PanelInfo& info : panels())
+      EXPECT_EQ(window->isPanelShown(info.id),
+                std::ranges::any_of(delivered(perspective),
+                                    [&](const DockPlace& place) { return place.panel == info.id; }))
+          << info.id.toStdString() << " in " << perspectiveName(perspective).toStdString();
+  }
+}
+
 TEST_F(PanelsTest, TheLocalisationTableIsCopiedAndExported) {
   makeProject(2, true);
   auto* table = panel<LocalisationPanel>("localisation");

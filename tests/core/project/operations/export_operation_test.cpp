@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "core/products/scan_colours.h"
 #include "core/project/job.h"
 #include "core/project/operation.h"
 #include "core/project/project.h"
@@ -81,6 +82,24 @@ TEST_F(ExportOperationTest, StageAndScansAreChosen) {
                    {"stage", std::string("odometry")}}));
   points = pointsOf("one.xyz");
   EXPECT_LT((points[0] - cloud_.points[0] - Eigen::Vector3d(2, 0, 0)).norm(), 1e-3);
+}
+
+TEST_F(ExportOperationTest, ScansHaveTheirColoursOfTheViews) {
+  const auto snapshot = project_->snapshot();
+  ASSERT_TRUE(project_->apply(colourEdit(*snapshot, {snapshot->scans()[1].id}, 0x0a141eU)));
+  ASSERT_TRUE(run({{"file", (folder_ / "map.xyz").string()}, {"colour", std::string("scan")}}));
+  std::istringstream text(test::fileText(folder_.path() / "map.xyz"));
+  std::vector<Rgb> colours;
+  for (std::string line; std::getline(text, line);) {
+    std::istringstream words(line);
+    double skipped = 0.0;
+    int r = 0, g = 0, b = 0;
+    words >> skipped >> skipped >> skipped >> r >> g >> b;
+    colours.push_back(
+        {static_cast<std::uint8_t>(r), static_cast<std::uint8_t>(g), static_cast<std::uint8_t>(b)});
+  }
+  ASSERT_EQ(colours.size(), 10U);
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(colours[i], i < 5 ? scanColour(0) : (Rgb{10, 20, 30}));
 }
 
 TEST_F(ExportOperationTest, ReducedHoldsFewer) {
