@@ -104,7 +104,6 @@ void View3dPanel::buildBar() {
   computing_->setAttribute(Qt::WA_TransparentForMouseEvents);
   computing_->setAutoFillBackground(true);
   computing_->setContentsMargins(8, 4, 8, 4);
-  computing_->move(8, 8);
   computing_->hide();
 
   compare_bar_ = new CompareBar(*scene_, this);

@@ -245,6 +245,8 @@ void View3dPanel::refreshComputing() {
     text = QString("Computing residuals: %1 to go…").arg(residuals);
   computing_->setText(text);
   computing_->adjustSize();
+  computing_->move(std::max(0, (view_->width() - computing_->width()) / 2),
+                   8);  // between what stands in the corners
   computing_->setVisible(!text.isEmpty());
 }
 

@@ -1,6 +1,7 @@
 #include "ui/window/command_palette.h"
 
 #include <QAction>
+#include <QFrame>
 #include <QKeyEvent>
 #include <QLineEdit>
 #include <QListWidget>
@@ -62,7 +63,13 @@ CommandPalette::CommandPalette(ActionRegistry& actions, QWidget* parent)
   list_->setUniformItemSizes(true);
   list_->setIconSize(QSize(16, 16));
   list_->setFrameShape(QFrame::NoFrame);
-  auto* layout = new QVBoxLayout(this);
+  auto* frame = new QFrame(this);  // an edge against what is behind
+  frame->setFrameShape(QFrame::Box);
+  frame->setForegroundRole(QPalette::Mid);
+  auto* around = new QVBoxLayout(this);
+  around->setContentsMargins(0, 0, 0, 0);
+  around->addWidget(frame);
+  auto* layout = new QVBoxLayout(frame);
   layout->setContentsMargins(8, 8, 8, 8);
   layout->addWidget(search_);
   layout->addWidget(list_);
@@ -97,8 +104,10 @@ void CommandPalette::filter(const QString& wanted) {
   const QIcon blank(nothing);  // so that all texts begin at one line
   for (const auto& [rank, action] : found) {
     const QString keys = action->shortcut().toString(QKeySequence::NativeText);
-    auto* item = new QListWidgetItem(action->icon().isNull() ? blank : action->icon(),
-                                     plainText(*action) + (keys.isEmpty() ? "" : "    " + keys), list_);
+    // Its help tells apart what has nearly the same name: a perspective, a panel, a stage.
+    auto* item = new QListWidgetItem(
+        action->icon().isNull() ? blank : action->icon(),
+        plainText(*action) + (keys.isEmpty() ? "" : "    " + keys) + "    –  " + action->statusTip(), list_);
     item->setToolTip(action->statusTip());
     item->setData(Qt::UserRole, action->objectName());
     if (!action->isEnabled()) item->setFlags(Qt::NoItemFlags);

@@ -35,7 +35,7 @@ std::vector<DockPlace> delivered(Perspective perspective) {
   switch (perspective) {
     case Perspective::Capture:
       return {{"view3d", Left, "", 0},
-              {"project-tree", Left, "view3d", 0.24},
+              {"project-tree", Left, "view3d", 0.26},
               {"details", Bottom, "project-tree", 0.45},
               {"depth-image", Bottom, "view3d", 0.40},
               {"photographs", Tab, "depth-image", 0},
