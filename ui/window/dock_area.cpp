@@ -49,22 +49,35 @@ ads::DockWidgetArea areaOf(DockSide side) {
   return ads::CenterDockWidgetArea;
 }
 
-// Of two neighbours in a splitter: the new one gets `share` of what both have.
-void divide(const ads::CDockAreaWidget* added, const ads::CDockAreaWidget* old, double share) {
-  auto* splitter = qobject_cast<QSplitter*>(added->parentWidget());
-  if (!splitter || share <= 0.0) return;
-  const int a = splitter->indexOf(const_cast<ads::CDockAreaWidget*>(added));
-  int b = -1;
-  for (int i = 0; i < splitter->count(); ++i)
-    if (splitter->widget(i) == old || splitter->widget(i)->isAncestorOf(old)) b = i;
-  if (a < 0 || b < 0 || a == b) return;
-  QList<int> sizes = splitter->sizes();
-  const int both = sizes[a] + sizes[b];
-  const int whole = both > 0 ? both : 1000;
-  sizes[a] = static_cast<int>(whole * share);
-  sizes[b] = whole - sizes[a];
-  splitter->setSizes(sizes);
-}
+// Sizes of the parts of splitters, as if each place had been cut off from the one beside it in turn. When a
+// part is really added a splitter shares its room out anew, so that sizes are set when all of them are there.
+class Shares {
+ public:
+  void cut(ads::CDockAreaWidget* added, const ads::CDockAreaWidget* old, double share) {
+    for (QWidget* part = added; part; part = part->parentWidget()) {
+      auto* splitter = qobject_cast<QSplitter*>(part->parentWidget());
+      if (!splitter || !splitter->isAncestorOf(old)) continue;
+      int beside = 0;
+      for (int i = 0; i < splitter->count(); ++i)
+        if (splitter->widget(i) == old || splitter->widget(i)->isAncestorOf(old)) beside = i;
+      QList<int>& sizes = sizes_[splitter];
+      if (sizes.isEmpty()) {
+        for (int i = 0; i < splitter->count(); ++i) sizes << 0;
+        sizes[beside] = 100000;
+      }
+      const int size = static_cast<int>(sizes[beside] * share);
+      sizes[beside] -= size;
+      sizes[splitter->indexOf(part)] = size;
+      return;
+    }
+  }
+  void apply() const {
+    for (const auto& [splitter, sizes] : sizes_) splitter->setSizes(sizes);
+  }
+
+ private:
+  std::map<QSplitter*, QList<int>> sizes_;
+};
 
 }  // namespace
 
@@ -140,7 +153,6 @@ void DockArea::arrange(Perspective perspective) {
     placed[place.panel] = manager_->addDockWidget(areaOf(side), found->second, old);
     found->second->toggleView(true);
     if (first.isEmpty()) first = place.panel;
-    if (old && side != DockSide::Tab) divide(placed[place.panel], old, place.share);
   }
   // Known to the manager, closed, so that they can be restored and opened.
   for (const auto& [id, dock] : docks_)
@@ -153,6 +165,11 @@ void DockArea::arrange(Perspective perspective) {
       dock->toggleView(false);
     }
   for (const auto& [id, area] : placed) area->setCurrentIndex(0);
+  Shares shares;
+  for (const DockPlace& place : delivered(perspective))
+    if (place.share > 0.0 && placed.contains(place.panel) && placed.contains(place.beside))
+      shares.cut(placed.at(place.panel), placed.at(place.beside), place.share);
+  shares.apply();
 }
 
 bool DockArea::isShown(const QString& panel) const {

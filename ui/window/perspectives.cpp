@@ -35,14 +35,14 @@ std::vector<DockPlace> delivered(Perspective perspective) {
   switch (perspective) {
     case Perspective::Capture:
       return {{"view3d", Left, "", 0},
-              {"project-tree", Left, "view3d", 0.26},
+              {"project-tree", Left, "view3d", 0.22},
               {"details", Bottom, "project-tree", 0.45},
               {"depth-image", Bottom, "view3d", 0.40},
               {"photographs", Tab, "depth-image", 0},
               {"log", Tab, "depth-image", 0}};
     case Perspective::Inspect:
       return {{"view3d", Left, "", 0},
-              {"project-tree", Left, "view3d", 0.24},
+              {"project-tree", Left, "view3d", 0.225},
               {"details", Bottom, "project-tree", 0.45},
               {"depth-image", Bottom, "view3d", 0.45},
               {"localisation", Tab, "depth-image", 0},
@@ -52,23 +52,19 @@ std::vector<DockPlace> delivered(Perspective perspective) {
     case Perspective::Register:
       return {{"view3d", Left, "", 0},
               {"stepper-view", Tab, "view3d", 0},
-              {"project-tree", Left, "view3d", 0.2},
+              {"project-tree", Left, "view3d", 0.19},
               {"details", Bottom, "project-tree", 0.45},
-              {"stepper", Right, "view3d", 0.34},
+              {"stepper", Right, "view3d", 0.38},
               {"stepper-plots", Bottom, "view3d", 0.34},
               {"depth-image", Tab, "stepper-plots", 0},
               {"localisation", Tab, "stepper-plots", 0},
               {"log", Tab, "stepper-plots", 0},
               {"history", Tab, "details", 0}};
     case Perspective::Relax:
-      return {{"view3d", Left, "", 0},
-              {"project-tree", Left, "view3d", 0.34},
-              {"relax", Right, "view3d", 0.42},
-              {"sitemap", Bottom, "view3d", 0.52},
-              {"links", Bottom, "relax", 0.45},
-              {"localisation", Tab, "sitemap", 0},
-              {"log", Tab, "sitemap", 0},
-              {"history", Bottom, "project-tree", 0.40}};
+      return {{"view3d", Left, "", 0},          {"project-tree", Left, "view3d", 0.18},
+              {"relax", Right, "view3d", 0.36}, {"sitemap", Bottom, "view3d", 0.52},
+              {"links", Bottom, "relax", 0.45}, {"localisation", Tab, "sitemap", 0},
+              {"log", Tab, "sitemap", 0},       {"history", Bottom, "project-tree", 0.40}};
   }
   return {};
 }

@@ -160,6 +160,24 @@ TEST_F(PanelsTest, APerspectiveShowsItsOwnPanelsHoweverOneCameThere) {
   }
 }
 
+TEST_F(PanelsTest, PanelsHaveTheirSharesOfTheWindowWhateverWasThereBefore) {
+  makeProject(2);
+  const auto share = [&](const char* panel) {
+    return static_cast<double>(window->docks().panel(panel)->width()) / window->width();
+  };
+  for (const bool again : {false, true}) {
+    window->setPerspective(Perspective::Capture);
+    settle();
+    EXPECT_NEAR(share("project-tree"), 0.22, 0.03);
+    window->setPerspective(Perspective::Relax);
+    if (again) window->resetLayout();
+    settle();
+    EXPECT_NEAR(share("project-tree"), 0.18, 0.03);
+    EXPECT_NEAR(share("relax"), 0.36 * 0.82, 0.03);
+    EXPECT_NEAR(share("view3d"), 0.64 * 0.82, 0.04);
+  }
+}
+
 TEST_F(PanelsTest, TheLocalisationTableIsCopiedAndExported) {
   makeProject(2, true);
   auto* table = panel<LocalisationPanel>("localisation");
