@@ -131,7 +131,11 @@ void PhotographsPanel::buildBar() {
   for (QToolButton* button : {add, save_, remove_}) button->setFocusPolicy(Qt::StrongFocus);
   for (QToolButton* button : {save_, remove_}) button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
   connect(save_, &QToolButton::clicked, this, &PhotographsPanel::askWhereToSave);
-  connect(remove_, &QToolButton::clicked, this, [this] { (void)model_->remove(currentRow()); });
+  connect(remove_, &QToolButton::clicked, this, [this, add] {
+    (void)model_->remove(currentRow());
+    // Not to the caption, which would take Undo for its own.
+    (model_->rowCount() > 0 ? static_cast<QWidget*>(list_) : add)->setFocus();
+  });
   layout->addWidget(which_);
   layout->addStretch();
   for (QWidget* widget : std::initializer_list<QWidget*>{caption_, add, save_, remove_})

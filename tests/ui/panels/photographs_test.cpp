@@ -94,10 +94,12 @@ TEST_F(PhotographsTest, DroppedPicturesGoToTheSelectedStopAndScansToTheForm) {
   QMimeData data;
   data.setUrls(
       {QUrl::fromLocalFile(pictureFile("yard.jpg", Qt::green)), QUrl::fromLocalFile("/scans/a.pcd")});
+  QDragEnterEvent entering(QPoint(50, 50), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+  QApplication::sendEvent(window, &entering);
   QDropEvent event(QPointF(50, 50), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
   QApplication::sendEvent(window, &event);
   settle();
-  EXPECT_EQ(snapshot().scans()[1].photographs.size(), 1U);
+  ASSERT_EQ(snapshot().scans()[1].photographs.size(), 1U);
   EXPECT_EQ(snapshot().scans()[1].photographs[0].media_type, "image/jpeg");
   EXPECT_NE(window->operationDialog("import"), nullptr);
 }
