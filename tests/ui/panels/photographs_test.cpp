@@ -66,7 +66,7 @@ TEST_F(PhotographsTest, AreAddedSeenAndRemoved) {
   click("photographs-remove");
   EXPECT_TRUE(snapshot().scans()[1].photographs.empty());
   EXPECT_TRUE(find("photographs-empty")->isVisible());
-  press(QKeySequence("Ctrl+Z"));
+  ASSERT_TRUE(trigger("edit.undo"));
   EXPECT_EQ(snapshot().scans()[1].photographs.size(), 1U);
   EXPECT_TRUE(shows(Qt::red));
 }
