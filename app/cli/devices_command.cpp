@@ -164,10 +164,79 @@ int askTilt(Context& context, const std::string& text) {
   return kDone;
 }
 
+// A SICK scanner at a network. Nothing in it is changed.
+int askCola(Context& context, const std::string& text) {
+  const auto url = parseDeviceUrl(text, scannerSchemes());
+  if (!url) return context.console.wrongUsage(url.error());
+  RealClock clock;
+  ChannelOpener opener(*url, 9600, clock);
+  auto unit = colaUnit(
+      *url, [&opener] { return opener.open(); }, clock);
+  if (!unit) return context.console.wrongUsage(unit.error());
+  JobControl job;
+  job.stop = context.stop;
+  const auto found = (*unit)->identify(job);
+  if (!found) return context.console.failed(found.error());
+  const auto degrees = [](double units) { return fixedReal(units / 10000.0, 2); };
+  const cola::ScanSetting& setting = found->setting;
+  std::string state = "not told";
+  if (found->state) state = std::to_string(*found->state) + (*found->state == 7 ? " (measures)" : "");
+  context.console.print(found->device + "\n  state                 " + state + "\n  field of view         " +
+                        degrees(setting.start) + " to " + degrees(setting.end) + " degrees by " +
+                        degrees(setting.step) + "\n  rate                  " +
+                        fixedReal(setting.frequency_chz / 100.0, 2) + " Hz\n");
+  context.console.printJson({{"port", url->port},
+                             {"type", found->device},
+                             {"state", found->state ? nlohmann::json(*found->state) : nlohmann::json()},
+                             {"start_deg", setting.start / 10000.0},
+                             {"end_deg", setting.end / 10000.0},
+                             {"resolution_deg", setting.step / 10000.0},
+                             {"frequency_hz", setting.frequency_chz / 100.0}});
+  return kDone;
+}
+
+// A Hokuyo scanner. It does not measure for that.
+int askScip(Context& context, const std::string& text) {
+  const auto url = parseDeviceUrl(text, scannerSchemes());
+  if (!url) return context.console.wrongUsage(url.error());
+  RealClock clock;
+  ChannelOpener opener(*url, 115200, clock);
+  auto unit = scipUnit(
+      *url, [&opener] { return opener.open(); }, clock);
+  if (!unit) return context.console.wrongUsage(unit.error());
+  JobControl job;
+  job.stop = context.stop;
+  const auto found = (*unit)->identify(job);
+  if (!found) return context.console.failed(found.error());
+  const scip::Parameters& p = found->parameters;
+  const double step_deg = 360.0 / p.steps_per_turn, start_deg = 90.0 + (p.first - p.front) * step_deg;
+  const auto say = [&](const char* key) { return scip::property(found->version, key); };
+  context.console.print(say("PROD") + " at " + url->port + "\n  model                 " + p.model +
+                        "\n  firmware              " + say("FIRM") + "\n  serial number         " +
+                        say("SERI") + "\n  field of view         " + fixedReal(start_deg, 2) + " to " +
+                        fixedReal(start_deg + (p.last - p.first) * step_deg, 2) + " degrees by " +
+                        fixedReal(step_deg, 4) + "\n  rate                  " + fixedReal(p.rpm / 60.0, 2) +
+                        " Hz\n  ranges                " + std::to_string(p.nearest_mm) + " to " +
+                        std::to_string(p.furthest_mm) + " mm\n");
+  context.console.printJson({{"port", url->port},
+                             {"type", say("PROD")},
+                             {"model", p.model},
+                             {"firmware", say("FIRM")},
+                             {"serial_number", say("SERI")},
+                             {"baud", found->baud},
+                             {"start_deg", start_deg},
+                             {"resolution_deg", step_deg},
+                             {"values", p.columns()},
+                             {"frequency_hz", p.rpm / 60.0}});
+  return kDone;
+}
+
 int askInstrument(Context& context, const std::string& text) {
   const std::string scheme = text.substr(0, text.find(':'));
   const bool tilt = std::ranges::find(tiltSchemes(), scheme, &DeviceScheme::name) != tiltSchemes().end();
-  return tilt ? askTilt(context, text) : askScanner(context, text);
+  if (tilt) return askTilt(context, text);
+  if (scheme == "urg") return askScip(context, text);
+  return scheme == "lms1xx" ? askCola(context, text) : askScanner(context, text);
 }
 
 }  // namespace
@@ -178,7 +247,8 @@ void addDevices(CLI::App& app, Chosen& chosen) {
       "List the serial ports that instruments may be plugged into, or ask an instrument how it is");
   auto url = std::make_shared<std::string>();
   command->add_option("url", *url,
-                      "What to ask, as lms2xx:PORT or epos:PORT; nothing in it is changed, nothing moves");
+                      "What to ask, as lms2xx:PORT, lms1xx:HOST, urg:PORT or epos:PORT; nothing in it is "
+                      "changed, nothing moves");
   command->callback([&chosen, url] {
     chosen.body = [url](Context& context) {
       return url->empty() ? listDevices(context) : askInstrument(context, *url);

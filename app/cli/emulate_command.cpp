@@ -14,7 +14,7 @@ struct EmulateWords {
   std::string experiment = "exp2fixed";
   int seed = 1, stop = 0, stops = 0;
   double speed = 1.0;
-  std::string scanner_link, tilt_link, tilt_model = "mip50";
+  std::string scanner_link, tilt_link, tilt_model = "mip50", scanner_model = "lms291";
 };
 
 // What a control line asks for; the error is told and nothing changes.
@@ -67,13 +67,17 @@ int emulate(Context& context, const EmulateWords& words) {
   if (!experiment) return context.console.failed(experiment.error());
   RealClock clock(words.speed);
   RigSettings settings;
+  if (Status status = settings.chooseScanner(words.scanner_model); !status)
+    return context.console.wrongUsage(status.error());
   if (Status status = settings.chooseTilt(words.tilt_model); !status)
     return context.console.wrongUsage(status.error());
   auto rig = TerminalRig::open(clock, *experiment, settings, words.scanner_link, words.tilt_link);
   if (!rig) return context.console.failed(rig.error());
   if (Status status = (*rig)->moveTo(words.stop); !status) return context.console.failed(status.error());
   const std::int64_t level = settings.levelCount();
-  const std::string scanner = words.scanner_link.empty() ? (*rig)->scannerPort() : words.scanner_link;
+  const std::string scanner = words.scanner_link.empty() || settings.scannerOverNetwork()
+                                  ? (*rig)->scannerPort()
+                                  : words.scanner_link;
   const std::string tilt = words.tilt_link.empty() ? (*rig)->tiltPort() : words.tilt_link;
   context.console.printJson({{"scanner", scanner},
                              {"tilt", tilt},
@@ -83,7 +87,7 @@ int emulate(Context& context, const EmulateWords& words) {
                               {{"counts_per_ms", settings.tilt.most_speed},
                                {"counts_per_ms2", settings.tilt.most_acceleration},
                                {"settling_ms", 1000.0 * settings.tilt.settle_s}}}});
-  context.console.print("--scanner lms2xx:" + scanner + " --tilt \"" + settings.tiltUrl(tilt) +
+  context.console.print("--scanner " + settings.scannerUrl(scanner) + " --tilt \"" + settings.tiltUrl(tilt) +
                         "\"\nmotor of " + shortestReal(settings.tilt.most_speed) + " counts/ms, " +
                         shortestReal(settings.tilt.most_acceleration) + " counts/ms2, " +
                         shortestReal(1000.0 * settings.tilt.settle_s) + " ms settling; Ctrl-C ends it");
@@ -111,8 +115,14 @@ void addEmulate(CLI::App& app, Chosen& chosen) {
   command->add_option("--speed", words->speed, "So many times as fast as the instruments are")
       ->check(CLI::Range(0.01, 100.0))
       ->capture_default_str();
-  command->add_option("--scanner-link", words->scanner_link, "A link to make to the scanner's terminal");
+  command->add_option(
+      "--scanner-link", words->scanner_link,
+      "A link to make to the scanner's terminal; of one at a network, the number of its port");
   command->add_option("--tilt-link", words->tilt_link, "A link to make to the tilt unit's terminal");
+  command
+      ->add_option("--scanner-model", words->scanner_model,
+                   "The scanner: " + joined(RigSettings::scannerModels(), ", "))
+      ->capture_default_str();
   command
       ->add_option("--tilt-model", words->tilt_model,
                    "The tilt unit: " + joined(RigSettings::tiltModels(), ", "))

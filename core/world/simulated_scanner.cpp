@@ -146,7 +146,8 @@ Echo echoOf(const Pulse& pulse, const LmsBeam& beam, double range_offset_m, Rand
   return echo;
 }
 
-int turnsOf(const ScannerGeometry& geometry) {
+int turnsOf(const ScannerGeometry& geometry, const LmsBeam& beam) {
+  if (!beam.interlaced) return 1;
   constexpr double kWholeDegree = kDegree;
   return std::max(1, static_cast<int>(std::lround(kWholeDegree / std::abs(geometry.azimuth_step_rad))));
 }
@@ -155,11 +156,11 @@ int turnsOf(const ScannerGeometry& geometry) {
 
 double beamDelay(const ScannerGeometry& geometry, const LmsBeam& beam, int column) {
   const double way = std::abs(geometry.azimuth_step_rad) * column;  // the mirror's, from the first beam
-  return beam.turn_s * (column % turnsOf(geometry) + way / (360.0 * kDegree));
+  return beam.turn_s * (column % turnsOf(geometry, beam) + way / (360.0 * kDegree));
 }
 
 double lineDuration(const ScannerGeometry& geometry, const LmsBeam& beam) {
-  return beam.turn_s * turnsOf(geometry);
+  return beam.turn_s * turnsOf(geometry, beam);
 }
 
 Pulse castPulse(const Site& site, const Ray& axis, const Eigen::Vector3d& across, const LmsBeam& beam) {

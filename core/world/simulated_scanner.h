@@ -24,6 +24,7 @@ struct LmsBeam {
   double pulse_m = 2.5;            // strikes nearer together than this melt into one pulse (mixed pixels)
   double sensitivity_m = 42.0;     // where a 10 % target facing the beam is just seen
   double turn_s = 0.01332;         // one turn of the mirror
+  bool interlaced = true;          // a turn measures whole degrees, as the LMS 2xx; else all beams
 };
 
 // What one beam brings home: a printed range, or the code for none.

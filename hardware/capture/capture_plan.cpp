@@ -28,7 +28,8 @@ const ParameterTable<CaptureSettings>& captureTable() {
     ParameterTable<CaptureSettings> t("capture");
     using S = CaptureSettings;
     t.text("scanner", &S::scanner,
-           "The scanner: lms2xx:PORT, options behind `?` (baud, angle, resolution, unit, latency)", "ours");
+           "The scanner: lms2xx:PORT, lms1xx:HOST or urg:PORT, options behind `?` (baud, resolution, ...)",
+           "ours");
     t.text(
         "tilt", &S::tilt,
         "The tilt unit: mip50:PORT or epos:PORT, options behind `?` (baud, level, min, max), or manual: to "

@@ -1,10 +1,13 @@
 #include "hardware/capture/instruments.h"
 #include "hardware/capture/lms_scanner_unit.h"
+#include "hardware/cola/cola_scanner_unit.h"
 #include "hardware/emulator/terminal_rig.h"
+#include "hardware/scip/scip_scanner_unit.h"
 #include "hardware/tilt/epos_unit.h"
 #include "hardware/tilt/mip50_unit.h"
 #include "hardware/transport/memory_channel.h"
 #include "hardware/transport/serial_port.h"
+#include "hardware/transport/tcp_channel.h"
 
 namespace tiltmap {
 
@@ -36,6 +39,17 @@ std::unique_ptr<TiltUnit> tiltUnit(const RigSettings& settings, std::unique_ptr<
   return std::make_unique<Mip50Unit>(std::move(channel), clock, driveOf(settings));
 }
 
+std::unique_ptr<ScannerUnit> scannerUnit(const RigSettings& settings,
+                                         std::function<Result<std::unique_ptr<ByteChannel>>()> opener,
+                                         Clock& clock, int baud) {
+  if (settings.scanner_model == ScannerModel::Cola)
+    return std::make_unique<ColaScannerUnit>(std::move(opener), clock, ColaSettings{});
+  if (settings.scanner_model == ScannerModel::Scip)
+    return std::make_unique<ScipScannerUnit>(
+        std::move(opener), clock, ScipSettings{.bauds = {}, .intensities = settings.scip.intensities});
+  return std::make_unique<LmsScannerUnit>(std::move(opener), clock, scannerSettings(baud));
+}
+
 class MemoryBench : public EmulatedBench {
  public:
   MemoryBench(Experiment experiment, const RigSettings& settings, int baud)
@@ -57,14 +71,19 @@ class MemoryBench : public EmulatedBench {
     Instruments instruments;
     instruments.clock = &clock_;
     instruments.open_scanner = [this]() -> Result<std::unique_ptr<ScannerUnit>> {
-      return std::make_unique<LmsScannerUnit>(
+      return scannerUnit(
+          settings_,
           [this]() -> Result<std::unique_ptr<ByteChannel>> {
-            MemoryPair pair = MemoryPair::make(clock_, "emulated scanner");
+            MemoryPair pair = MemoryPair::make(clock_, "emulated scanner",
+                                               settings_.scannerOverNetwork() ? Pacing::None : Pacing::Baud);
+            if (settings_.scannerOverNetwork())
+              if (Status status = pair.host->setLine({100'000'000, Parity::None}); !status)
+                return fail(status.error());
             rig_.scanner().plug(pair.device.get());
             scanner_wire_ = std::move(pair);
             return std::move(scanner_wire_.host);
           },
-          clock_, scannerSettings(baud_));
+          clock_, baud_);
     };
     instruments.open_tilt = [this]() -> Result<std::unique_ptr<TiltUnit>> {
       MemoryPair pair = MemoryPair::make(clock_, "emulated tilt");
@@ -112,8 +131,8 @@ class TerminalBench : public EmulatedBench {
     Instruments instruments;
     instruments.clock = clock_.get();
     instruments.open_scanner = [this]() -> Result<std::unique_ptr<ScannerUnit>> {
-      return std::make_unique<LmsScannerUnit>([this] { return open(rig_->scannerPort(), 9600); }, *clock_,
-                                              scannerSettings(baud_));
+      return scannerUnit(
+          settings_, [this] { return openScanner(); }, *clock_, baud_);
     };
     instruments.open_tilt = [this]() -> Result<std::unique_ptr<TiltUnit>> {
       auto channel = open(rig_->tiltPort(), tiltBaud(settings_));
@@ -131,6 +150,14 @@ class TerminalBench : public EmulatedBench {
   EmulatedRig& rig() override { return rig_->rig(); }
 
  private:
+  Result<std::unique_ptr<ByteChannel>> openScanner() {
+    if (!settings_.scannerOverNetwork()) return open(rig_->scannerPort(), 9600);
+    const auto address = parseTcpAddress(rig_->scannerPort(), 0);
+    if (!address) return fail(address.error());
+    auto channel = TcpChannel::connect(*address, *clock_);
+    if (!channel) return fail(channel.error());
+    return std::move(*channel);
+  }
   Result<std::unique_ptr<ByteChannel>> open(const std::string& port, int baud) {
     auto channel = SerialPort::open(port, {baud, Parity::None}, *clock_);
     if (!channel) return fail(channel.error());

@@ -5,7 +5,9 @@
 #include <string>
 
 #include "hardware/capture/sweep.h"
+#include "hardware/cola/cola_scanner_unit.h"
 #include "hardware/emulator/rig.h"
+#include "hardware/scip/scip_scanner_unit.h"
 #include "hardware/tilt/epos_unit.h"
 #include "hardware/tilt/manual_unit.h"
 #include "hardware/transport/device_url.h"
@@ -18,6 +20,12 @@ namespace tiltmap {
 Result<Instruments> namedInstruments(const std::string& scanner_url, const std::string& tilt_url,
                                      RealClock& clock, AskOperator ask);
 
+// A scanner at a network with the options of "lms1xx:HOST?...". The clock must outlive it.
+Result<std::unique_ptr<ColaScannerUnit>> colaUnit(const DeviceUrl& url, ColaScannerUnit::Opener opener,
+                                                  Clock& clock);
+// A Hokuyo with the options of "urg:PORT?...". The clock must outlive it.
+Result<std::unique_ptr<ScipScannerUnit>> scipUnit(const DeviceUrl& url, ScipScannerUnit::Opener opener,
+                                                  Clock& clock);
 // An EPOS with the options of "epos:PORT?...", behind a channel that is open. The clock must outlive it.
 Result<std::unique_ptr<EposUnit>> eposUnit(const DeviceUrl& url, std::unique_ptr<ByteChannel> channel,
                                            Clock& clock);

@@ -3,6 +3,8 @@
 #include "core/geometry/pose.h"
 #include "hardware/capture/instruments.h"
 #include "hardware/capture/lms_scanner_unit.h"
+#include "hardware/cola/cola_scanner_unit.h"
+#include "hardware/scip/scip_scanner_unit.h"
 #include "hardware/tilt/epos_unit.h"
 #include "hardware/tilt/mip50_unit.h"
 #include "hardware/transport/channel_opener.h"
@@ -14,6 +16,7 @@ namespace {
 constexpr int kScannerBaud = 38400;
 constexpr int kTiltBaud = 19200;
 constexpr int kEposBaud = 115200;
+constexpr int kUrgBaud = 115200;
 constexpr double kScannerLatencyS = 0.002;
 
 // The limits of a tilt from ?min= and ?max=, degrees.
@@ -62,6 +65,58 @@ std::shared_ptr<ChannelOpener> openerOf(DeviceUrl url, int baud, RealClock& cloc
                                .string();
   }
   return std::make_shared<ChannelOpener>(std::move(url), baud, clock);
+}
+
+Result<ColaSettings> colaSettings(const DeviceUrl& url) {
+  ColaSettings settings;
+  const auto resolution = url.number("resolution", 0.05, 5.0),
+             frequency = url.number("frequency", 1.0, 200.0), latency = url.number("latency", 0.0, 1000.0);
+  for (const auto* number : {&resolution, &frequency, &latency})
+    if (!*number) return fail(number->error());
+  settings.resolution_deg = *resolution;
+  settings.frequency_hz = *frequency;
+  if (*latency) settings.latency_s = 0.001 * **latency;
+  return settings;
+}
+
+Result<ScipSettings> scipSettings(const DeviceUrl& url) {
+  ScipSettings settings;
+  const auto baud = url.integer("baud", 300, 4000000), intensity = url.integer("intensity", 0, 1);
+  for (const auto* number : {&baud, &intensity})
+    if (!*number) return fail(number->error());
+  const auto latency = url.number("latency", 0.0, 1000.0);
+  if (!latency) return fail(latency.error());
+  if (*baud) settings.bauds = {**baud};
+  settings.intensities = intensity->value_or(0) == 1;
+  if (*latency) settings.latency_s = 0.001 * **latency;
+  return settings;
+}
+
+using ScannerOpener = std::function<Result<std::unique_ptr<ScannerUnit>>()>;
+
+Result<ScannerOpener> scannerOpener(const DeviceUrl& url, RealClock& clock) {
+  if (url.scheme == "lms1xx") {
+    const auto settings = colaSettings(url);
+    if (!settings) return fail(settings.error());
+    return [channels = openerOf(url, kScannerBaud, clock), s = *settings,
+            &clock]() -> Result<std::unique_ptr<ScannerUnit>> {
+      return std::make_unique<ColaScannerUnit>([channels] { return channels->open(); }, clock, s);
+    };
+  }
+  if (url.scheme == "urg") {
+    const auto settings = scipSettings(url);
+    if (!settings) return fail(settings.error());
+    return [channels = openerOf(url, kUrgBaud, clock), s = *settings,
+            &clock]() -> Result<std::unique_ptr<ScannerUnit>> {
+      return std::make_unique<ScipScannerUnit>([channels] { return channels->open(); }, clock, s);
+    };
+  }
+  const auto settings = lmsSettings(url);
+  if (!settings) return fail(settings.error());
+  return [channels = openerOf(url, kScannerBaud, clock), s = *settings,
+          &clock]() -> Result<std::unique_ptr<ScannerUnit>> {
+    return std::make_unique<LmsScannerUnit>([channels] { return channels->open(); }, clock, s);
+  };
 }
 
 struct TiltSettings {
@@ -147,6 +202,20 @@ Result<std::function<Result<std::unique_ptr<TiltUnit>>()>> tiltOpener(const Devi
 
 }  // namespace
 
+Result<std::unique_ptr<ColaScannerUnit>> colaUnit(const DeviceUrl& url, ColaScannerUnit::Opener opener,
+                                                  Clock& clock) {
+  const auto settings = colaSettings(url);
+  if (!settings) return fail(settings.error());
+  return std::make_unique<ColaScannerUnit>(std::move(opener), clock, *settings);
+}
+
+Result<std::unique_ptr<ScipScannerUnit>> scipUnit(const DeviceUrl& url, ScipScannerUnit::Opener opener,
+                                                  Clock& clock) {
+  const auto settings = scipSettings(url);
+  if (!settings) return fail(settings.error());
+  return std::make_unique<ScipScannerUnit>(std::move(opener), clock, *settings);
+}
+
 Result<std::unique_ptr<EposUnit>> eposUnit(const DeviceUrl& url, std::unique_ptr<ByteChannel> channel,
                                            Clock& clock) {
   const auto settings = eposSettings(url);
@@ -160,17 +229,14 @@ Result<Instruments> namedInstruments(const std::string& scanner_url, const std::
   if (!scanner) return fail(scanner.error());
   const auto tilt = parseDeviceUrl(tilt_url, tiltSchemes());
   if (!tilt) return fail(tilt.error());
-  const auto settings = lmsSettings(*scanner);
-  if (!settings) return fail(settings.error());
-  auto opener = tiltOpener(*tilt, clock, std::move(ask));
-  if (!opener) return fail(opener.error());
+  auto open_scanner = scannerOpener(*scanner, clock);
+  if (!open_scanner) return fail(open_scanner.error());
+  auto open_tilt = tiltOpener(*tilt, clock, std::move(ask));
+  if (!open_tilt) return fail(open_tilt.error());
   Instruments instruments;
   instruments.clock = &clock;
-  instruments.open_tilt = std::move(*opener);
-  instruments.open_scanner = [channels = openerOf(*scanner, kScannerBaud, clock), s = *settings,
-                              &clock]() -> Result<std::unique_ptr<ScannerUnit>> {
-    return std::make_unique<LmsScannerUnit>([channels] { return channels->open(); }, clock, s);
-  };
+  instruments.open_scanner = std::move(*open_scanner);
+  instruments.open_tilt = std::move(*open_tilt);
   return instruments;
 }
 

@@ -60,10 +60,62 @@ std::unique_ptr<EmulatedTilt> makeTilt(Clock& clock, DeviceWire& wire, const Rig
 }
 
 std::unique_ptr<EmulatedScanner> makeScanner(Clock& clock, SiteView& view, const RigSettings& settings) {
+  if (settings.scanner_model == ScannerModel::Cola)
+    return std::make_unique<ColaEmulator>(clock, view, settings.cola);
+  if (settings.scanner_model == ScannerModel::Scip)
+    return std::make_unique<ScipEmulator>(clock, view, settings.scip);
   return std::make_unique<LmsEmulator>(clock, view, settings.scanner);
 }
 
 }  // namespace
+
+std::vector<std::string> RigSettings::scannerModels() {
+  return {"lms291", "lms111", "lms511", "urg04lx", "utm30lx", "utm30lx-ew"};
+}
+
+// Ranges, noise and divergence of the beams by the makers' data sheets, rounded.
+Status RigSettings::chooseScanner(std::string_view model) {
+  beam = {};
+  if (model == "lms291") {
+    scanner_model = ScannerModel::Lms2xx;
+    return {};
+  }
+  beam.interlaced = false;
+  if (model == "lms111" || model == "lms511") {
+    const bool large = model == "lms511";
+    scanner_model = ScannerModel::Cola;
+    cola = large ? ColaEmulatorSettings::lms5xx() : ColaEmulatorSettings::lms1xx();
+    beam.divergence_rad = large ? 0.0047 : 0.015;
+    beam.maximum_range_m = large ? 80.0 : 20.0;
+    beam.sensitivity_m = large ? 40.0 : 18.0;
+    beam.noise_m = large ? 0.007 : 0.012;
+    // In the units that its telegrams hold.
+    beam.resolution_m = 0.001 * static_cast<double>(cola.scale);
+    beam.turn_s = 100.0 / cola.setting.frequency_chz;
+    return {};
+  }
+  if (model == "urg04lx" || model == "utm30lx" || model == "utm30lx-ew") {
+    const bool small = model == "urg04lx";
+    scanner_model = ScannerModel::Scip;
+    scip = small                ? ScipEmulatorSettings::urg04lx()
+           : model == "utm30lx" ? ScipEmulatorSettings::utm30lx()
+                                : ScipEmulatorSettings::utm30lxEw();
+    beam.divergence_rad = small ? 0.01 : 0.0035;
+    beam.maximum_range_m = small ? 5.6 : 30.0;
+    beam.sensitivity_m = small ? 5.0 : 20.0;
+    beam.noise_m = 0.01;
+    beam.resolution_m = 0.001;
+    beam.turn_s = 60.0 / scip.parameters.rpm;
+    return {};
+  }
+  return fail("`" + std::string(model) + "` is no scanner that can be emulated", "emulated rig",
+              "there are " + joined(scannerModels(), ", "));
+}
+
+std::string RigSettings::scannerUrl(const std::string& port) const {
+  if (scanner_model == ScannerModel::Scip) return (scip.network ? "urg:tcp:" : "urg:") + port;
+  return (scanner_model == ScannerModel::Cola ? "lms1xx:" : "lms2xx:") + port;
+}
 
 std::vector<std::string> RigSettings::tiltModels() {
   return {"mip50", "epos", "epos-v1", "epos-usb"};

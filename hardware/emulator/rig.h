@@ -7,16 +7,20 @@
 #include <vector>
 
 #include "core/world/experiment.h"
+#include "hardware/emulator/cola_emulator.h"
 #include "hardware/emulator/epos_emulator.h"
 #include "hardware/emulator/lms_emulator.h"
 #include "hardware/emulator/mip50_emulator.h"
+#include "hardware/emulator/scip_emulator.h"
 
 namespace tiltmap {
 
 // What the rig consists of; the thesis had an LMS 291 on a MIP 50.
+enum class ScannerModel { Lms2xx, Cola, Scip };
 enum class TiltModel { Mip50, Epos };
 
 struct RigSettings {
+  ScannerModel scanner_model = ScannerModel::Lms2xx;
   TiltModel tilt_model = TiltModel::Mip50;
   // The sweep that lines are expected of. A line measured at such a tilt has the noise that the simulation
   // gives that row; the scanner itself does not know rows.
@@ -24,8 +28,21 @@ struct RigSettings {
   double step_rad = 0.01396263401595463662;    // 0.8 deg
   LmsBeam beam;
   LmsEmulatorSettings scanner;
+  ColaEmulatorSettings cola;
+  ScipEmulatorSettings scip;
   Mip50EmulatorSettings tilt;
   EposEmulatorSettings epos;
+
+  // "lms291", "urg04lx", "utm30lx"; over a network "lms111", "lms511", "utm30lx-ew". Fails for other words.
+  // Sets the beam as well.
+  Status chooseScanner(std::string_view model);
+  static std::vector<std::string> scannerModels();
+  // How the scanner at a port is named for a capture: "lms2xx:PORT".
+  std::string scannerUrl(const std::string& port) const;
+  // At a network instead of a serial port.
+  bool scannerOverNetwork() const {
+    return scanner_model == ScannerModel::Cola || (scanner_model == ScannerModel::Scip && scip.network);
+  }
 
   // "mip50"; "epos" (protocol V2, 115200 Bd), "epos-v1" (38400 Bd), "epos-usb". Fails for other words.
   Status chooseTilt(std::string_view model);

@@ -1,12 +1,35 @@
 #include "hardware/emulator/terminal_rig.h"
 
+#include "core/base/text.h"
+#include "hardware/transport/tcp_channel.h"
+
 namespace tiltmap {
+
+namespace {
+
+Result<std::unique_ptr<DeviceWire>> scannerWire(RealClock& clock, const RigSettings& settings,
+                                                const std::string& link) {
+  if (settings.scannerOverNetwork()) {
+    const auto port = link.empty() ? std::optional<long long>(0) : parseInteger(link);
+    if (!port || *port < 0 || *port > 65535)
+      return fail("`" + link + "` is no port of a network", "emulated scanner",
+                  "give a number up to 65535, or none for any that is free");
+    auto wire = TcpWire::listen(clock, static_cast<int>(*port));
+    if (!wire) return fail(wire.error());
+    return std::move(*wire);
+  }
+  auto terminal = PseudoTerminal::open(clock, link);
+  if (!terminal) return fail(terminal.error());
+  return std::move(*terminal);
+}
+
+}  // namespace
 
 Result<std::unique_ptr<TerminalRig>> TerminalRig::open(RealClock& clock, Experiment experiment,
                                                        const RigSettings& settings,
                                                        const std::string& scanner_link,
                                                        const std::string& tilt_link) {
-  auto scanner = PseudoTerminal::open(clock, scanner_link);
+  auto scanner = scannerWire(clock, settings, scanner_link);
   if (!scanner) return fail(scanner.error());
   auto tilt = PseudoTerminal::open(clock, tilt_link);
   if (!tilt) return fail(tilt.error());
@@ -16,7 +39,7 @@ Result<std::unique_ptr<TerminalRig>> TerminalRig::open(RealClock& clock, Experim
 }
 
 TerminalRig::TerminalRig(RealClock& clock, Experiment experiment, const RigSettings& settings,
-                         std::unique_ptr<PseudoTerminal> scanner, std::unique_ptr<PseudoTerminal> tilt,
+                         std::unique_ptr<DeviceWire> scanner, std::unique_ptr<DeviceWire> tilt,
                          std::string scanner_link, std::string tilt_link)
     : clock_(clock),
       scanner_link_(std::move(scanner_link)),
@@ -34,7 +57,12 @@ Status TerminalRig::moveTo(int stop) {
   return thread_.locked([&] { return rig_.moveTo(stop); });
 }
 
-Status TerminalRig::replug(std::unique_ptr<PseudoTerminal>& terminal, const std::string& link, bool scanner) {
+Status TerminalRig::replug(std::unique_ptr<DeviceWire>& terminal, const std::string& link, bool scanner) {
+  if (dynamic_cast<TcpWire*>(terminal.get()))
+    return thread_.locked([&]() -> Status {
+      terminal->hangUp();
+      return {};
+    });
   // The new one first, so that it cannot get the name of the old one. Closing takes the link away.
   auto fresh = PseudoTerminal::open(clock_);
   if (!fresh) return fail(fresh.error());

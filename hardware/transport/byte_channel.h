@@ -65,6 +65,11 @@ class DeviceWire : public ByteChannel {
   virtual Instant nextArrival() const = 0;
   // To wait on with poll(); -1 where there is none.
   virtual int descriptor() const { return -1; }
+  // How many clients there have been, where that can be told: a network's instrument forgets what a client
+  // had ordered when another one comes.
+  virtual int clients() const { return 1; }
+  // Ends the connection with the client, where there is such a thing.
+  virtual void hangUp() {}
 };
 
 // "02 80 D6 02": for messages, logs and tests.

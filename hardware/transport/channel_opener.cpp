@@ -1,13 +1,17 @@
 #include "hardware/transport/channel_opener.h"
 
+#include <algorithm>
+
 #include "hardware/transport/replay_channel.h"
 #include "hardware/transport/serial_port.h"
+#include "hardware/transport/tcp_channel.h"
 
 namespace tiltmap {
 
 namespace {
 
 constexpr std::string_view kReplay = "replay:";
+constexpr std::string_view kTcp = "tcp:";
 
 }  // namespace
 
@@ -24,7 +28,10 @@ Result<std::unique_ptr<ByteChannel>> ChannelOpener::open() {
     if (!log) return fail(log.error());
     log_ = std::move(*log);
   }
-  auto channel = url_.port.starts_with(kReplay) ? openReplay() : openPort(given->value_or(baud_));
+  const bool network = url_.tcp_port != 0 || url_.port.starts_with(kTcp);
+  auto channel = url_.port.starts_with(kReplay) ? openReplay()
+                 : network                      ? openNetwork()
+                                                : openPort(given->value_or(baud_));
   if (!log_) return channel;
   if (!channel) {
     log_->add(WireRecord::Kind::Lost, channel.error().what, clock_.now());
@@ -39,6 +46,15 @@ Result<std::unique_ptr<ByteChannel>> ChannelOpener::openPort(int baud) {
   auto port = SerialPort::open(*path, {baud}, clock_);
   if (!port) return fail(port.error());
   return std::move(*port);
+}
+
+Result<std::unique_ptr<ByteChannel>> ChannelOpener::openNetwork() {
+  const std::string where = url_.port.starts_with(kTcp) ? url_.port.substr(kTcp.size()) : url_.port;
+  const auto address = parseTcpAddress(where, std::max(url_.tcp_port, url_.usual_port));
+  if (!address) return fail(address.error());
+  auto channel = TcpChannel::connect(*address, clock_);
+  if (!channel) return fail(channel.error());
+  return std::move(*channel);
 }
 
 Result<std::unique_ptr<ByteChannel>> ChannelOpener::openReplay() {

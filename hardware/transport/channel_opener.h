@@ -23,6 +23,7 @@ class ChannelOpener {
 
  private:
   Result<std::unique_ptr<ByteChannel>> openPort(int baud);
+  Result<std::unique_ptr<ByteChannel>> openNetwork();
   Result<std::unique_ptr<ByteChannel>> openReplay();
   DeviceUrl url_;
   int baud_;

@@ -45,7 +45,9 @@ Status addOption(DeviceUrl& url, std::string_view part, const DeviceScheme& sche
 
 const std::vector<DeviceScheme>& scannerSchemes() {
   static const std::vector<DeviceScheme> known{
-      {"lms2xx", true, {"angle", "resolution", "unit", "latency"}, "lms2xx:/dev/ttyUSB0?baud=38400"}};
+      {"lms2xx", true, {"angle", "resolution", "unit", "latency"}, "lms2xx:/dev/ttyUSB0?baud=38400"},
+      {"lms1xx", true, {"resolution", "frequency", "latency"}, "lms1xx:192.168.0.1", 2111},
+      {"urg", true, {"intensity", "latency"}, "urg:/dev/ttyACM0", 0, 10940}};
   return known;
 }
 
@@ -108,6 +110,8 @@ Result<DeviceUrl> parseDeviceUrl(std::string_view text, const std::vector<Device
     return fail("`" + url.scheme + "` is no kind of instrument for this", whole,
                 (nearest ? "did you mean " + *nearest + ":? " : "") + "write " + examples(known));
   }
+  url.tcp_port = scheme->tcp_port;
+  url.usual_port = scheme->usual_port;
   text.remove_prefix(colon + 1);
   const auto question = text.rfind('?');
   url.port = std::string(text.substr(0, question));

@@ -17,8 +17,10 @@ struct DeviceScheme {
   bool has_port = true;              // "manual:" has none
   std::vector<std::string> options;  // beside those of every port: baud, log, speed
   std::string example;
+  int tcp_port = 0;    // PORT is HOST or HOST:PORT in a network, this port where none is given; 0: serial
+  int usual_port = 0;  // of "tcp:HOST", for those that may be serial or in a network
 };
-// "lms2xx" is a scanner; "mip50", "epos" and "manual" are tilt units.
+// "lms2xx", "lms1xx" and "urg" are scanners; "mip50", "epos" and "manual" are tilt units.
 const std::vector<DeviceScheme>& scannerSchemes();
 const std::vector<DeviceScheme>& tiltSchemes();
 
@@ -28,6 +30,7 @@ struct DeviceUrl {
   std::string scheme;
   std::string port;
   std::map<std::string, std::string> options;
+  int tcp_port = 0, usual_port = 0;  // as DeviceScheme's
 
   std::string text() const;
   std::optional<std::string> option(const std::string& name) const;

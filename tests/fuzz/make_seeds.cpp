@@ -43,6 +43,18 @@ void seedInstruments(const Seed& seed) {
         "11 11 03 40 60 00 01 06 00 00 00 C3 71", "02 00 01 00 00 02 06 B5 20",
         "03 90 02 10 02 41 60 00 01 64 CF", "04 90 02 60 02 01 41 90 02 60 02 01 41 60 00 22 D1"})
     seed("epos", ("frame" + std::to_string(number++)).c_str(), fromHex(frame));
+  seed("cola", "scan",
+       "1\x02sSN LMDscandata 1 1 89A27F 0 2 3 3 27477BA9 2747813B 0 0 7 0 0 1388 168 1 5 -5 1 DIST1 3F800000 "
+       "00000000 FFF92230 1388 3 3E8 0 1 1 RSSI1 3F800000 00000000 186A0 1388 3 E8 E9 EA 0 0 0 0 0\x03");
+  seed("cola", "words",
+       "9\x02sMN mLMPsetscancfg +2500 +1 +2500 -450000 +2250000\x03\x02sFA 2\x03\x02sRA STlms 7\x03");
+  seed("cola", "binary", "3" + fromHex("02 02 02 02 00 00 00 07 73 4D 4E 20 52 75 6E 19 02 73 03"));
+  seed("scip", "quit", "4QT\n00P\n\n");
+  seed("scip", "parameters",
+       "8PP\n00P\nMODL:URG;@\nDMIN:20;4\nDMAX:5600;_\nARES:1024;\\\nAMIN:44;7\nAMAX:725;o\nAFRT:384;6\n"
+       "SCAN:600;e\n\n");
+  seed("scip", "scan", "7MD0000000201000\n99b\nm2@0?\n1Dh1Dh1DhG\n\n");
+  seed("scip", "order", "2ME0000108003207\n");
   seed("wire", "session",
        "# tiltmap wire session 1\n# lms2xx:x\n# begun 5.0\n0.1 = 9600 8N1\n0.2 > 02 00\n0.3 < 06\n0.4 ! "
        "gone\n");

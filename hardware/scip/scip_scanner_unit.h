@@ -1,0 +1,77 @@
+// A Hokuyo URG or UTM, over USB, RS-232 or TCP, as capture wants it: streaming. SCIP 2.0.
+//
+// Written after what is public about the commands; no scanner was at hand.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "hardware/capture/device_clock.h"
+#include "hardware/capture/scanner_unit.h"
+#include "hardware/scip/scip_codec.h"
+#include "hardware/transport/byte_channel.h"
+
+namespace tiltmap {
+
+struct ScipSettings {
+  std::vector<int> bauds;    // tried in this order; empty: 115200, 19200, 38400. A network has none
+  bool intensities = false;  // UTM types
+  double latency_s = 0.002;  // what an adapter or a network may hold bytes back
+};
+
+class ScipScannerUnit : public ScannerUnit {
+ public:
+  using Opener = std::function<Result<std::unique_ptr<ByteChannel>>()>;
+  // The clock must outlive the unit.
+  ScipScannerUnit(Opener opener, Clock& clock, ScipSettings settings);
+  ~ScipScannerUnit() override;
+
+  const std::string& name() const override { return name_; }
+  Status prepare(const JobControl& job) override;
+  int columns() const override { return parameters_.columns(); }
+  double azimuthStart() const override { return parameters_.azimuthStart(); }
+  double azimuthStep() const override { return parameters_.azimuthStep(); }
+  Result<std::optional<ScannerEvent>> poll() override;
+  Status release() override;
+  std::vector<std::string> takeWarnings() override;
+
+  // What it is, without letting it measure.
+  struct Identity {
+    scip::Properties version;
+    scip::Parameters parameters;
+    int baud = 0;
+  };
+  Result<Identity> identify(const JobControl& job);
+
+ private:
+  Status connect(const JobControl& job);
+  Result<bool> answersAt(int baud, const JobControl& job);
+  // Nothing where no answer came in time.
+  Result<std::optional<scip::Reply>> ask(const std::string& command, const JobControl& job, double limit_s);
+  Result<scip::Reply> demand(const std::string& command, const JobControl& job);
+  Result<scip::Properties> properties(const std::string& command, const JobControl& job);
+  Status receive();
+  LineTimes timesOf(std::uint32_t time_ms);
+  std::optional<ScannerEvent> beginning();
+  Result<std::optional<ScannerEvent>> whole(const scip::Reply& reply);
+  Status lost(Error error);
+
+  Opener opener_;
+  Clock& clock_;
+  ScipSettings settings_;
+  std::string name_ = "Hokuyo scanner";
+  std::unique_ptr<ByteChannel> channel_;
+  scip::Parameters parameters_;
+  scip::ScanOrder order_;
+  scip::ReplyReader reader_;
+  std::vector<scip::ReplyReader::Item> items_;
+  bool streaming_ = false;
+  bool told_ = false;  // the scan under way has been announced
+  Instant arrival_{};  // of the bytes that came last
+  LineTimes times_;    // of the one that was announced
+  DeviceClock device_clock_{1e-3, 24};
+  std::optional<ScannerEvent> held_;
+};
+
+}  // namespace tiltmap
