@@ -18,8 +18,8 @@ struct ScreenshotWords {
   std::string panel = "map", size, stage, view = "iso", colour = "scan", quantity = "range", points = "all";
   std::string perspective = "inspect", theme = "dark";
   std::vector<std::string> front;
-  std::string pair, preset = "default";
-  int iteration = -1;
+  std::string pair, preset = "default", relax;
+  int iteration = -1, relax_step = 0;
   double scale = 1.0;
   long long scan = -1;
   double point_size = 2.0;
@@ -106,6 +106,10 @@ Result<RgbImage> windowPicture(const SnapshotPtr& snapshot, const ScreenshotWord
                         {}};
     if (words.iteration >= 0) settings.stepped->iteration = words.iteration;
   }
+  if (!words.relax.empty()) {
+    settings.relaxed = {words.relax, {}};
+    if (words.relax_step > 0) settings.relaxed->step = words.relax_step;
+  }
   if (!words.stage.empty()) {
     const auto stage = stageOrLatest(*snapshot, words.stage);
     if (!stage) return fail(stage.error());
@@ -184,6 +188,13 @@ void addScreenshot(CLI::App& app, Chosen& chosen) {
       ->check(CLI::NonNegativeNumber)
       ->needs("--pair");
   command->add_option("--preset", words->preset, "Of the ICP stepper: default or thesis")->needs("--pair");
+  command
+      ->add_option("--relax", words->relax,
+                   "Preset of a relaxation whose proposal window and panels show; the project is not touched")
+      ->check(CLI::IsMember({"default", "thesis", "sequential"}));
+  command->add_option("--relax-step", words->relax_step, "Held within this step instead, 1 is the first")
+      ->check(CLI::PositiveNumber)
+      ->needs("--relax");
   command->add_option("--theme", words->theme, "Of window and panels: dark, light or high-contrast")
       ->check(CLI::IsMember({"dark", "light", "high-contrast"}));
   command->add_option("--scale", words->scale, "Of window and panels, as on a fine screen: 1 to 4")

@@ -119,6 +119,56 @@ TEST_F(CliScreenshot, APanelIsDrawnAloneAsOnAFineScreen) {
   EXPECT_GT(coloursIn(picture, 0, 0, 1, 1), 20);
 }
 
+// The panels of registration, relaxation, site map and links, in the states that they are made for.
+TEST_F(CliScreenshot, EveryPanelOfRegistrationAndRelaxationIsDrawnInItsStates) {
+  ASSERT_EQ(run({"register", "p.tiltmap"}).exit_code, 0);
+  const std::string before = fileText(folder_.path() / "p.tiltmap");
+  const auto revision = run({"history", "p.tiltmap"}).out;
+  const std::vector<std::vector<std::string>> choices = {
+      {"stepper"},
+      {"stepper", "--pair", "0:1", "--iteration", "0"},
+      {"stepper", "--pair", "0:1", "--iteration", "3"},
+      {"stepper", "--pair", "1:2", "--preset", "thesis"},
+      {"stepper-plots"},
+      {"stepper-plots", "--pair", "0:1"},
+      {"stepper-view"},
+      {"stepper-view", "--pair", "0:1", "--iteration", "1"},
+      {"relax"},
+      {"relax", "--relax", "default"},
+      {"relax", "--relax", "thesis", "--relax-step", "2"},
+      {"sitemap"},
+      {"sitemap", "--relax", "thesis", "--relax-step", "2"},
+      {"links"},
+      {"links", "--theme", "high-contrast"},
+      {"view3d", "--relax", "thesis", "--relax-step", "2"}};
+  std::set<std::string> files;
+  for (const auto& choice : choices) {
+    std::vector<std::string> words = {"screenshot", "p.tiltmap", "x.png", "--size", "640x480", "--panel"};
+    words.insert(words.end(), choice.begin(), choice.end());
+    const ProgramRun result = run(words);
+    if (!rendered(result)) GTEST_SKIP() << result.err;
+    EXPECT_EQ(result.err, "");
+    const RgbImage picture = pngPixels(folder_.path() / "x.png");
+    ASSERT_EQ(picture.width, 640) << choice.front();
+    EXPECT_GT(coloursIn(picture, 0, 0, 1, 1), 20) << choice.front();
+    EXPECT_TRUE(files.insert(fileText(folder_.path() / "x.png")).second) << choice.front();
+  }
+  EXPECT_EQ(run({"history", "p.tiltmap"}).out, revision);
+  EXPECT_EQ(fileText(folder_.path() / "p.tiltmap"), before) << "a picture stores nothing";
+}
+
+TEST_F(CliScreenshot, AHeldRelaxationIsTheSamePictureEveryTime) {
+  ASSERT_EQ(run({"register", "p.tiltmap"}).exit_code, 0);
+  std::set<std::string> files;
+  for (int turn = 0; turn < 2; ++turn) {
+    const ProgramRun result = run({"screenshot", "p.tiltmap", "x.png", "--panel", "sitemap", "--relax",
+                                   "thesis", "--relax-step", "3", "--size", "400x300"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    files.insert(fileText(folder_.path() / "x.png"));
+  }
+  EXPECT_EQ(files.size(), 1U);
+}
+
 TEST_F(CliScreenshot, WindowPicturesDependOnWhatWasAsked) {
   std::set<std::string> files;
   const std::vector<std::vector<std::string>> choices = {{"--perspective", "inspect"},
@@ -156,6 +206,11 @@ TEST_F(CliScreenshot, RefusalsSayWhatToDoAndWriteNothing) {
   refused({"p.tiltmap", "no.png", "--panel", "window", "--size", "100x100"}, 1, "160");
   refused({"p.tiltmap", "no.png", "--panel", "window", "--scale", "9"}, 2, "scale");
   refused({"p.tiltmap", "no.png", "--panel", "window", "--perspective", "sky"}, 2, "sky");
+  refused({"p.tiltmap", "no.png", "--panel", "relax", "--relax-step", "2"}, 2, "relax");
+  refused({"p.tiltmap", "no.png", "--panel", "relax", "--relax", "default", "--relax-step", "9999"}, 1,
+          "9999");
+  refused({"p.tiltmap", "no.png", "--panel", "stepper", "--pair", "0:0"}, 1, "itself");
+  refused({"p.tiltmap", "no.png", "--panel", "stepper", "--pair", "0:1", "--iteration", "9999"}, 1, "9999");
   const ProgramRun result = run({"screenshot", "p.tiltmap", "p.tiltmap"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(run({"info", "p.tiltmap"}).exit_code, 0);  // still a project

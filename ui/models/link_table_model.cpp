@@ -12,11 +12,16 @@
 namespace tiltmap::ui {
 
 LinkTableModel::LinkTableModel(Workspace& workspace, QObject* parent)
-    : QAbstractTableModel(parent), workspace_(workspace) {
+    : QAbstractTableModel(parent), workspace_(workspace), display_(&workspace.display()) {
   connect(&workspace.session(), &ProjectSession::snapshotReplaced, this, &LinkTableModel::readAgain);
   connect(&workspace.display(), &ScanDisplay::stageChanged, this, &LinkTableModel::readAgain);
   connect(&workspace.preferences(), &Preferences::unitsChanged, this, &LinkTableModel::readAgain);
   readAgain();
+}
+
+LinkTableModel::~LinkTableModel() {
+  // Views would go on showing where scans would be, with nobody left to end it.
+  if (what_if_ && display_) display_->showWhatIf({}, {});
 }
 
 void LinkTableModel::readAgain() {
@@ -213,15 +218,15 @@ QVariant LinkTableModel::headerData(int section, Qt::Orientation orientation, in
       workspace_.preferences().lengthUnit() == LengthUnit::Foot ? QString("ft") : QString("mm");
   const QStringList titles = {"Link",
                               "Quality",
-                              "overlap (%)",
-                              "residual (" + small + ")",
-                              "pairs",
-                              "off (" + small + ")",
-                              "turned (°)",
+                              "Overlap (%)",
+                              "Residual (" + small + ")",
+                              "Pairs",
+                              "Off (" + small + ")",
+                              "Turned (°)",
                               "Origin",
                               "State",
-                              "with (" + small + ")",
-                              "without (" + small + ")"};
+                              "With (" + small + ")",
+                              "Without (" + small + ")"};
   static const QStringList kTips = {
       "The fixed scan and the moving one, by index",
       "Good, fair (a figure is beyond its limit: overlap 30 %, residual 50 mm, off 50 mm or 0.3°), doubtful "

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QAbstractTableModel>
+#include <QPointer>
 #include <optional>
 
 #include "core/project/link_quality.h"
@@ -9,6 +10,7 @@
 
 namespace tiltmap::ui {
 
+class ScanDisplay;
 class Workspace;
 
 class LinkTableModel : public QAbstractTableModel {
@@ -33,6 +35,7 @@ class LinkTableModel : public QAbstractTableModel {
   static constexpr int kSortRole = Qt::UserRole + 1;  // numbers, or texts that sort as people expect
 
   explicit LinkTableModel(Workspace& workspace, QObject* parent = nullptr);
+  ~LinkTableModel() override;  // ends the question
 
   LinkId linkAt(int row) const { return links_[static_cast<std::size_t>(row)].id; }
   int rowOf(LinkId link) const;  // -1 where it is not there
@@ -63,6 +66,7 @@ class LinkTableModel : public QAbstractTableModel {
   QVariant number(std::size_t row, int column) const;
 
   Workspace& workspace_;
+  QPointer<ScanDisplay> display_;  // may go first
   SnapshotPtr snapshot_;
   std::vector<Link> links_;
   std::vector<LinkJudgement> judged_;

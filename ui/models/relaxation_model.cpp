@@ -96,6 +96,7 @@ JobRequest RelaxationModel::watched(JobRequest request) {
   };
   Run run;
   run.feed = std::make_shared<RelaxationFeed>(notify);
+  if (hold_at_ > 0) run.feed->holdAt(hold_at_);
   run.operation = makeRelaxOperation(run.feed);
   request.operation = run.operation.get();
   request.keep = run.operation;
@@ -166,9 +167,28 @@ void RelaxationModel::discard() {
 }
 
 void RelaxationModel::showBefore(bool before) {
-  if (before_shown_ == before) return;
-  before_shown_ = before;
-  showPoses();
+  // One of the two alone: both at once is over.
+  display_.compareProposal(ProposalCompare::Off);
+  if (before_shown_ != before) {
+    before_shown_ = before;
+    showPoses();
+  }
+  Q_EMIT changed();
+}
+
+void RelaxationModel::compareInView(ProposalCompare how) {
+  if (!isProposal()) return;
+  if (how != ProposalCompare::Off && before_shown_) {
+    before_shown_ = false;
+    showPoses();
+  }
+  display_.compareProposal(how);
+  Q_EMIT changed();
+}
+
+void RelaxationModel::stepOn() {
+  if (!isRunning()) return;
+  currentRun()->feed->stepOn();
   Q_EMIT changed();
 }
 
@@ -288,9 +308,12 @@ void RelaxationModel::showRoles() {
 void RelaxationModel::showPoses() {
   if (scans_.empty() || (!isRunning() && !isProposal())) return display_.withdraw();
   const std::vector<Pose>& shown = before_shown_ ? start_ : poses_;
-  std::vector<std::pair<ScanId, Pose>> poses;
-  for (std::size_t i = 0; i < scans_.size(); ++i) poses.emplace_back(scans_[i], shown[i]);
-  display_.propose(std::move(poses));
+  std::vector<std::pair<ScanId, Pose>> poses, before;
+  for (std::size_t i = 0; i < scans_.size(); ++i) {
+    poses.emplace_back(scans_[i], shown[i]);
+    before.emplace_back(scans_[i], start_[i]);
+  }
+  display_.propose(std::move(poses), std::move(before));
 }
 
 void RelaxationModel::forget() {

@@ -55,6 +55,13 @@ class RelaxationModel : public QObject {
   // Of a proposal: where the scans were, or where they would be.
   void showBefore(bool before);
   bool showsBefore() const { return before_shown_; }
+  // Both at once, in the 3D view.
+  void compareInView(ProposalCompare how);
+  // Paused: to the end of one step more, and paused again.
+  void stepOn();
+  // Those that are started from now on pause by themselves within this step (1: the first), where a
+  // registration in it has made its first iteration, else at its end. 0: they do not.
+  void holdNextAt(int step) { hold_at_ = step; }
 
   QString method() const { return method_; }
   QString doing() const;  // "aligning scan 3 with 2, 4: iteration 5, 812 pairs, rms 12.1 mm"
@@ -116,6 +123,7 @@ class RelaxationModel : public QObject {
   std::vector<RelaxationLink> links_;
   QStringList log_;
   bool before_shown_ = false;
+  int hold_at_ = 0;
 };
 
 }  // namespace tiltmap::ui

@@ -125,7 +125,7 @@ int RelaxationTableModel::rowCount(const QModelIndex& parent) const {
   return parent.isValid() ? 0 : static_cast<int>(rows_.size());
 }
 int RelaxationTableModel::columnCount(const QModelIndex& parent) const {
-  return parent.isValid() ? 0 : truth_known_ ? ErrorAfter + 1 : static_cast<int>(kColumns);
+  return parent.isValid() ? 0 : static_cast<int>(kColumns);
 }
 
 QVariant RelaxationTableModel::number(const Row& row, int column) const {
@@ -163,6 +163,7 @@ QString RelaxationTableModel::text(const Row& row, int column) const {
     return row.first ? "origin" : row.pinned ? "pinned" : "";
   }
   if (source_ == Source::Nothing && (column < BeforeX || column > BeforeZ)) return {};
+  if ((column == ErrorBefore || column == ErrorAfter) && !truth_known_) return {};
   if (column == Moved) return small(row.moved.translation_m);
   if (column == Turned) return qt(fixedReal(row.moved.rotation_rad / kDegree, 3));
   if (column == ErrorBefore) return small(row.error_before_m);
@@ -241,29 +242,29 @@ QVariant RelaxationTableModel::headerData(int section, Qt::Orientation orientati
   const QStringList titles = {"Stop",
                               "Pin",
                               "Set",
-                              "moved (" + small + ")",
-                              "turned (°)",
+                              "Moved (" + small + ")",
+                              "Turned (°)",
+                              "Error before (" + small + ")",
+                              "Error after (" + small + ")",
                               "x before (" + name + ")",
                               "y before (" + name + ")",
                               "z before (" + name + ")",
                               "x after (" + name + ")",
                               "y after (" + name + ")",
-                              "z after (" + name + ")",
-                              "error before (" + small + ")",
-                              "error after (" + small + ")"};
+                              "z after (" + name + ")"};
   static const QStringList kTips = {"Index of the stop in the survey",
                                     "Whether a relaxation leaves the stop where it is",
                                     "What the stop is to the relaxation that runs",
                                     "Distance between before and after",
                                     "Angle between before and after",
-                                    "Position before",
-                                    "Position before",
-                                    "Position before",
-                                    "Position after",
-                                    "Position after",
-                                    "Position after",
                                     "Distance from where the stop truly is, before",
-                                    "Distance from where the stop truly is, after"};
+                                    "Distance from where the stop truly is, after",
+                                    "Position before",
+                                    "Position before",
+                                    "Position before",
+                                    "Position after",
+                                    "Position after",
+                                    "Position after"};
   if (role == Qt::DisplayRole) return titles.value(section);
   if (role == Qt::ToolTipRole) return kTips.value(section);
   return {};

@@ -21,15 +21,15 @@ class RelaxationTableModel : public QAbstractTableModel {
     Role,
     Moved,
     Turned,
+    ErrorBefore,  // against the truth, where that is known
+    ErrorAfter,
     BeforeX,
     BeforeY,
     BeforeZ,
     AfterX,
     AfterY,
     AfterZ,
-    kColumns,
-    ErrorBefore = kColumns,
-    ErrorAfter
+    kColumns
   };
   enum class Source { Nothing, Running, Proposal, Stages };
   // Numbers to sort by.
@@ -38,6 +38,7 @@ class RelaxationTableModel : public QAbstractTableModel {
   explicit RelaxationTableModel(Workspace& workspace, QObject* parent = nullptr);
 
   Source source() const { return source_; }
+  bool truthKnown() const { return truth_known_; }
   QString title() const;  // "Proposal: pairwise poses before, relaxed after"
   // "furthest 41.2 mm (scan 9); RMSE 23.1 mm before, 4.0 mm after": empty where there is nothing to compare.
   QString summary() const;

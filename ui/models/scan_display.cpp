@@ -13,6 +13,8 @@ ScanDisplay::ScanDisplay(const ProjectSession& session, QObject* parent)
     hidden_.clear();
     chosen_.reset();
     proposed_.clear();
+    before_.clear();
+    compare_ = ProposalCompare::Off;
     roles_.clear();
     ghosts_.clear();
     left_out_.clear();
@@ -62,21 +64,34 @@ void ScanDisplay::setStage(std::optional<Stage> stage) {
   Q_EMIT stageChanged();
 }
 
-void ScanDisplay::propose(std::vector<std::pair<ScanId, Pose>> poses) {
+void ScanDisplay::propose(std::vector<std::pair<ScanId, Pose>> poses,
+                          std::vector<std::pair<ScanId, Pose>> before) {
   if (poses.empty()) return withdraw();
   proposed_ = std::move(poses);
+  before_ = std::move(before);
   Q_EMIT placedChanged();
 }
 
 void ScanDisplay::withdraw() {
   if (proposed_.empty()) return;
   proposed_.clear();
+  before_.clear();
+  compareProposal(ProposalCompare::Off);
   Q_EMIT placedChanged();
 }
 
+void ScanDisplay::compareProposal(ProposalCompare how) {
+  if (!isProposal()) how = ProposalCompare::Off;
+  if (how == compare_) return;
+  compare_ = how;
+  Q_EMIT proposalCompareChanged();
+}
+
 SnapshotPtr ScanDisplay::placed() const {
-  const SnapshotPtr snapshot = session_.snapshot();
-  return snapshot && isProposal() ? snapshot->withPoses(Stage::Relaxed, proposed_) : snapshot;
+  SnapshotPtr snapshot = session_.snapshot();
+  if (!snapshot || !isProposal()) return snapshot;
+  if (!before_.empty()) snapshot = snapshot->withPoses(Stage::Pairwise, before_);
+  return snapshot->withPoses(Stage::Relaxed, proposed_);
 }
 
 void ScanDisplay::showWhatIf(std::map<ScanId, Pose> ghosts, std::vector<LinkId> left_out) {

@@ -18,6 +18,9 @@ class ProjectSession;
 // What a scan is to a relaxation that runs.
 enum class RelaxationRole { None, Held, Active, Waiting, Queued, Aligning };
 
+// How the poses of a proposal are compared with those it began from, in 3D.
+enum class ProposalCompare { Off, Wipe, Blink };
+
 class ScanDisplay : public QObject {
   Q_OBJECT
 
@@ -38,13 +41,18 @@ class ScanDisplay : public QObject {
   void setStage(std::optional<Stage> stage);  // nothing: follow the latest
 
   // Poses that are only proposed are shown in place of the stage `relaxed`, and of whatever stage was chosen,
-  // until they are withdrawn. The project does not know of them.
-  void propose(std::vector<std::pair<ScanId, Pose>> poses);
+  // until they are withdrawn. The project does not know of them. `before`: what they began from, shown as the
+  // stage `pairwise`.
+  void propose(std::vector<std::pair<ScanId, Pose>> poses, std::vector<std::pair<ScanId, Pose>> before = {});
   void withdraw();
   bool isProposal() const { return !proposed_.empty(); }
   // What views draw: the project, with the proposed poses where there are any.
   SnapshotPtr placed() const;
   Stage placedStage() const { return isProposal() ? Stage::Relaxed : stage(); }
+
+  // Of a proposal only, and over with it.
+  void compareProposal(ProposalCompare how);
+  ProposalCompare proposalCompare() const { return compare_; }
 
   // Where scans would be without some links that somebody asks about: shown beside where they are.
   void showWhatIf(std::map<ScanId, Pose> ghosts, std::vector<LinkId> left_out);
@@ -61,12 +69,14 @@ class ScanDisplay : public QObject {
   void placedChanged();  // poses were proposed or withdrawn
   void rolesChanged();
   void whatIfChanged();
+  void proposalCompareChanged();
 
  private:
   const ProjectSession& session_;
   std::set<ScanId> hidden_;
   std::optional<Stage> chosen_;
-  std::vector<std::pair<ScanId, Pose>> proposed_;
+  std::vector<std::pair<ScanId, Pose>> proposed_, before_;
+  ProposalCompare compare_ = ProposalCompare::Off;
   std::map<ScanId, RelaxationRole> roles_;
   std::map<ScanId, Pose> ghosts_;
   std::vector<LinkId> left_out_;

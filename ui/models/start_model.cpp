@@ -1,6 +1,7 @@
 #include "ui/models/start_model.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tiltmap::ui {
 
@@ -9,7 +10,7 @@ StartModel::StartModel(QObject* parent) : QObject(parent) {}
 void StartModel::setScans(PreparedPairPtr scans, const Pose& odometry, bool keep) {
   scans_ = std::move(scans);
   odometry_ = odometry;
-  ghost_worker_.cancel();
+  forgetGhost();
   forgetSweep();
   if (!keep || !scans_) {
     point_pairs_.clear();
@@ -38,7 +39,6 @@ void StartModel::nudge(const Eigen::Vector3d& shift_m, double turn_rad) {
 void StartModel::change(const Pose& start, bool by_hand) {
   start_ = start;
   by_hand_ = by_hand;
-  ghost_.reset();
   Q_EMIT startChanged();
   computeGhost();
 }
@@ -46,28 +46,38 @@ void StartModel::change(const Pose& start, bool by_hand) {
 void StartModel::setGhostWanted(bool wanted) {
   if (wanted == ghost_wanted_) return;
   ghost_wanted_ = wanted;
-  if (!wanted) {
-    ghost_worker_.cancel();
-    ghost_.reset();
-  }
+  if (!wanted) forgetGhost();
   computeGhost();
 }
 
+void StartModel::forgetGhost() {
+  ghost_worker_.cancel();
+  ghost_running_ = ghost_stale_ = false;
+  ghost_.reset();
+}
+
 void StartModel::computeGhost() {
-  if (ghost_wanted_ && scans_)
+  // While the start is dragged it changes faster than the scans can be registered: what runs is shown when it
+  // comes, and the latest start is next. Cancelling for each change would show nothing before the end.
+  ghost_stale_ = ghost_running_;
+  if (ghost_wanted_ && scans_ && !ghost_running_) {
+    ghost_running_ = true;
     ghost_worker_.start([this, scans = scans_, start = start_](const std::stop_token& stop) {
       const auto prepared = scans->get();
       auto result =
           prepared ? registerPair(prepared->fixed, prepared->moving, start, scans->settings(), {{}, stop})
                    : Result<PairResult>(fail(prepared.error()));
       return [this, result = std::move(result)] {
+        ghost_running_ = false;
         if (result)
           ghost_ = *result;
         else
           Q_EMIT failed(result.error());
+        if (std::exchange(ghost_stale_, false)) return computeGhost();
         Q_EMIT ghostChanged();
       };
     });
+  }
   Q_EMIT ghostChanged();
 }
 

@@ -37,11 +37,12 @@ class StartModel : public QObject {
   // Shift along the fixed scan's axes, metres; turn of the moving scan on the spot, radians, left positive.
   void nudge(const Eigen::Vector3d& shift_m, double turn_rad);
 
-  // Where registering would end from here, computed anew after every change of the start.
+  // Where registering would end from here, computed anew after every change of the start. While that is busy
+  // it is the one of a start a moment ago.
   bool ghostWanted() const { return ghost_wanted_; }
   void setGhostWanted(bool wanted);
   const std::optional<PairResult>& ghost() const { return ghost_; }
-  bool ghostBusy() const { return ghost_worker_.busy(); }
+  bool ghostBusy() const { return ghost_running_; }
 
   // Points picked in both scans, three pairs or more.
   const std::vector<PointPair>& pointPairs() const { return point_pairs_; }
@@ -70,12 +71,14 @@ class StartModel : public QObject {
  private:
   void change(const Pose& start, bool by_hand);
   void computeGhost();
+  void forgetGhost();
   void forgetSweep();
 
   PreparedPairPtr scans_;
   Pose odometry_, start_;
   bool by_hand_ = false;
-  bool ghost_wanted_ = false;
+  bool ghost_wanted_ = false, ghost_running_ = false;
+  bool ghost_stale_ = false;  // the start has changed since the one that runs
   std::optional<PairResult> ghost_;
   std::vector<PointPair> point_pairs_;
   std::optional<HeadingSweep> sweep_;

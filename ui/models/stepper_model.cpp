@@ -311,7 +311,13 @@ bool StepperModel::isStored() const {
 }
 
 bool StepperModel::canAccept() const {
-  return isEnded() && result_->succeeded() && session_.isWritable() && !isStored();
+  return isEnded() && result_->succeeded() && session_.isWritable() && !project_busy_ && !isStored();
+}
+
+void StepperModel::setProjectBusy(bool busy) {
+  if (busy == project_busy_) return;
+  project_busy_ = busy;
+  Q_EMIT stateChanged();
 }
 
 QString StepperModel::acceptHint() const {
@@ -319,6 +325,8 @@ QString StepperModel::acceptHint() const {
   if (!result_->succeeded()) return "There is nothing to accept: " + qt(stopReasonName(result_->stop_reason));
   if (!session_.isWritable()) return "The project is open for reading only";
   if (isStored()) return "The project has this link";
+  if (project_busy_)
+    return "Other work goes on, or waits to be decided; the result can be accepted when that is over";
   return "Store the result as a link, and place the scans by it (can be undone)";
 }
 

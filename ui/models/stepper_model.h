@@ -76,6 +76,8 @@ class StepperModel : public QObject {
 
   // Stores the result as a link (see steppedPairEdit), whatever iteration is shown.
   bool canAccept() const;
+  // While other work goes on the project must not change under it.
+  void setProjectBusy(bool busy);
   QString acceptHint() const;  // why not, or what it does
   bool isStored() const;       // the project has this very link
   Status accept();
@@ -122,6 +124,7 @@ class StepperModel : public QObject {
   int position_ = 0;
   int wanted_ = 0;  // steps asked for while one is computed
   bool running_ = false;
+  bool project_busy_ = false;
   QTimer pace_;
   BackgroundWorker worker_;
 };

@@ -20,6 +20,7 @@ Workspace::Workspace(Preferences& preferences, QObject* parent)
   connect(&jobs_, &JobQueue::failed, &messages_, &Messages::error);
   connect(&stepper_, &StepperModel::failed, &messages_, &Messages::error);
   connect(&jobs_, &JobQueue::finished, this, &Workspace::tellFinished);
+  connect(&jobs_, &JobQueue::busyChanged, this, [this] { stepper_.setProjectBusy(jobs_.busy()); });
   connect(&session_, &ProjectSession::snapshotReplaced, this,
           [this] { selection_.keepOnly(session_.snapshot().get()); });
   connect(&session_, &ProjectSession::opened, this, [this] {

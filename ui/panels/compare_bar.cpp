@@ -69,6 +69,13 @@ void CompareBar::setActive(bool active) {
   apply();
 }
 
+void CompareBar::choose(Stage before, bool blink) {
+  const QSignalBlocker quiet_stage(before_), quiet_how(how_);
+  if (const int row = before_->findData(qt(stageName(before))); row >= 0) before_->setCurrentIndex(row);
+  how_->setCurrentIndex(how_->findData(blink ? "blink" : "wipe"));
+  apply();
+}
+
 void CompareBar::apply() {
   const bool possible = before_->count() > 0;
   const bool blinks = how_->currentData() == "blink";

@@ -23,6 +23,8 @@ class CompareBar : public QWidget {
   // What there is to compare the shown stage with.
   void setStages(const SnapshotPtr& snapshot, Stage shown);
   void setActive(bool active);
+  // As if somebody had chosen so. A stage that there is no choice of is left out.
+  void choose(Stage before, bool blink);
 
  Q_SIGNALS:
   void changed();       // draw again

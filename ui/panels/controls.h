@@ -2,7 +2,10 @@
 #pragma once
 
 #include <QDoubleSpinBox>
+#include <QLabel>
 #include <QToolButton>
+
+#include "ui/look/icons.h"
 
 namespace tiltmap::ui {
 
@@ -27,6 +30,26 @@ inline QToolButton* toggleButton(QWidget* parent, const QString& name, const QSt
   button->setCheckable(true);
   button->setChecked(on);
   return button;
+}
+
+// A picture with words for those who cannot see it.
+inline QToolButton* iconButton(QWidget* parent, const QString& name, const QString& image,
+                               const QString& text, const QString& tip) {
+  auto* button = new QToolButton(parent);
+  describe(button, name, text, tip);
+  button->setIcon(icon(image));
+  button->setIconSize(QSize(20, 20));
+  button->setFocusPolicy(Qt::StrongFocus);
+  return button;
+}
+
+// Sentences, which can be selected and copied.
+inline QLabel* wrappedLabel(QWidget* parent, const QString& name) {
+  auto* label = new QLabel(parent);
+  label->setObjectName(name);
+  label->setWordWrap(true);
+  label->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  return label;
 }
 
 // A length in metres, told when the number has been finished.

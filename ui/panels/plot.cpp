@@ -17,6 +17,7 @@
 #include <qwt_scale_widget.h>
 #include <qwt_symbol.h>
 #include <qwt_text.h>
+#include <utility>
 
 namespace tiltmap::ui {
 
@@ -36,6 +37,7 @@ struct Plot::Parts {
   QwtPlotRescaler* rescaler = nullptr;
   QVector<QwtPlotSeriesItem*> series;
   QVector<bool> is_dots;
+  bool legend_changed = false;
   PlotColours colours;
 
   QwtPlotCurve* curve(int k) const { return static_cast<QwtPlotCurve*>(series[k]); }
@@ -179,7 +181,10 @@ void Plot::setBars(int series, const QVector<PlotBar>& bars) {
 }
 
 void Plot::setInLegend(int series, bool shown) {
-  parts_->series[series]->setItemAttribute(QwtPlotItem::Legend, shown);
+  QwtPlotItem& item = *parts_->series[series];
+  if (item.testItemAttribute(QwtPlotItem::Legend) == shown) return;
+  item.setItemAttribute(QwtPlotItem::Legend, shown);
+  parts_->legend_changed = true;
 }
 
 void Plot::setMark(std::optional<double> x) {
@@ -189,6 +194,9 @@ void Plot::setMark(std::optional<double> x) {
 
 void Plot::redraw() {
   parts_->plot->replot();
+  // A legend that entries come to while its plot is hidden leaves out those that were there before: it is made
+  // anew.
+  if (std::exchange(parts_->legend_changed, false) && parts_->legend) showLegend();
   if (parts_->rescaler) parts_->rescaler->rescale();
 }
 

@@ -1,5 +1,6 @@
 #include "ui/panels/relaxation_panel.h"
 
+#include <QAction>
 #include <QComboBox>
 #include <QFrame>
 #include <QHBoxLayout>
@@ -137,7 +138,10 @@ QWidget* RelaxationPanel::makeBar() {
   row->addWidget(run_);
   row->addWidget(form);
   row->addStretch();
+  step_ = barButton("relax-step", "go-next", "Step", "One step more, then pause again", bar);
+  step_->setToolButtonStyle(Qt::ToolButtonIconOnly);
   row->addWidget(pause_);
+  row->addWidget(step_);
   row->addWidget(cancel_);
   layout->addLayout(row);
   auto* status = new QHBoxLayout;
@@ -159,6 +163,7 @@ QWidget* RelaxationPanel::makeBar() {
   connect(form, &QToolButton::clicked, this, [this] { context_.actions.trigger("op.relax"); });
   connect(pause_, &QToolButton::clicked, this,
           [this] { relaxation_.isPaused() ? relaxation_.resume() : relaxation_.pause(); });
+  connect(step_, &QToolButton::clicked, &relaxation_, &RelaxationModel::stepOn);
   connect(cancel_, &QToolButton::clicked, &relaxation_, &RelaxationModel::cancel);
   return bar;
 }
@@ -178,20 +183,28 @@ QWidget* RelaxationPanel::makeDecision() {
   row->setSpacing(8);
   before_ = barButton("relax-before", "", "Before", "Show all views where the scans were", decision_);
   after_ = barButton("relax-after", "", "After", "Show all views where the scans would be", decision_);
-  for (QToolButton* button : {before_, after_}) button->setCheckable(true);
+  wipe_ = barButton("relax-wipe", "", "Wipe",
+                    "Both in the 3D view: before left of a divider that can be dragged, after right of it",
+                    decision_);
+  blink_ = barButton("relax-blink", "", "Blink", "Both in the 3D view, one after the other", decision_);
+  auto* show = new QLabel("Show", decision_);
+  for (QToolButton* button : {before_, after_, wipe_, blink_}) button->setCheckable(true);
   auto* accept = new QPushButton("Accept", decision_);
   accept->setObjectName("relax-accept");
   accept->setToolTip("Store the poses as the stage relaxed, and the links found; undo takes it back");
   auto* discard = new QPushButton("Discard", decision_);
   discard->setObjectName("relax-discard");
   discard->setToolTip("Leave the project as it is; nothing of the result is kept");
-  row->addWidget(before_);
-  row->addWidget(after_);
+  row->addWidget(show);
+  for (QToolButton* button : {before_, after_, wipe_, blink_}) row->addWidget(button);
   row->addStretch();
-  row->addWidget(accept);
-  row->addWidget(discard);
+  auto* choice = new QHBoxLayout;
+  choice->setSpacing(8);
+  choice->addWidget(accept, 1);
+  choice->addWidget(discard, 1);
   layout->addWidget(decision_text_);
   layout->addLayout(row);
+  layout->addLayout(choice);
   connect(before_, &QToolButton::clicked, this, [this] {
     relaxation_.showBefore(true);
     refresh();
@@ -200,6 +213,19 @@ QWidget* RelaxationPanel::makeDecision() {
     relaxation_.showBefore(false);
     refresh();
   });
+  const auto compare = [this](ProposalCompare how) {
+    relaxation_.compareInView(how);
+    refresh();
+    // What was asked for is to be seen.
+    const QAction* view = context_.actions.find("panel.view3d");
+    if (how != ProposalCompare::Off && view && !view->isChecked()) context_.actions.trigger("panel.view3d");
+  };
+  connect(wipe_, &QToolButton::clicked, this,
+          [compare](bool on) { compare(on ? ProposalCompare::Wipe : ProposalCompare::Off); });
+  connect(blink_, &QToolButton::clicked, this,
+          [compare](bool on) { compare(on ? ProposalCompare::Blink : ProposalCompare::Off); });
+  connect(&context_.workspace.display(), &ScanDisplay::proposalCompareChanged, this,
+          &RelaxationPanel::refresh);
   connect(accept, &QPushButton::clicked, &relaxation_, &RelaxationModel::accept);
   connect(discard, &QPushButton::clicked, &relaxation_, &RelaxationModel::discard);
   return decision_;
@@ -288,6 +314,7 @@ void RelaxationPanel::refresh() {
   pause_->setEnabled(running);
   pause_->setText(paused ? "Go on" : "Pause");
   pause_->setAccessibleName(pause_->text());
+  step_->setEnabled(paused);
   cancel_->setEnabled(running);
   const JobStatus* job = relaxation_.job();
   QString state = snapshot && snapshot->scans().size() < 2 ? "There are fewer than two scans to relax."
@@ -314,10 +341,14 @@ void RelaxationPanel::refresh() {
   progress_->setVisible(running);
   progress_->setValue(job ? static_cast<int>(1000.0 * job->fraction) : 0);
   decision_->setVisible(relaxation_.isProposal());
-  decision_text_->setText(relaxation_.isProposal() ? "A proposal: nothing is stored yet. " + model_->summary()
-                                                   : "");
+  decision_text_->setText("A proposal: nothing is stored yet. Its figures stand over the table.");
+  const ProposalCompare compared = workspace.display().proposalCompare();
   before_->setChecked(relaxation_.showsBefore());
-  after_->setChecked(!relaxation_.showsBefore());
+  after_->setChecked(!relaxation_.showsBefore() && compared == ProposalCompare::Off);
+  wipe_->setChecked(compared == ProposalCompare::Wipe);
+  blink_->setChecked(compared == ProposalCompare::Blink);
+  for (const int column : {RelaxationTableModel::ErrorBefore, RelaxationTableModel::ErrorAfter})
+    table_->setColumnHidden(column, !model_->truthKnown());
   const QString summary = model_->summary();
   summary_->setText(model_->title() + (summary.isEmpty() ? "." : ". " + summary + "."));
   refreshJobs();

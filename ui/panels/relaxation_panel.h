@@ -52,6 +52,7 @@ class RelaxationPanel : public QWidget {
   QComboBox* preset_ = nullptr;
   QPushButton* run_ = nullptr;
   QToolButton* pause_ = nullptr;
+  QToolButton* step_ = nullptr;
   QToolButton* cancel_ = nullptr;
   QLabel* state_ = nullptr;
   QLabel* doing_ = nullptr;
@@ -60,6 +61,8 @@ class RelaxationPanel : public QWidget {
   QLabel* decision_text_ = nullptr;
   QToolButton* before_ = nullptr;
   QToolButton* after_ = nullptr;
+  QToolButton* wipe_ = nullptr;
+  QToolButton* blink_ = nullptr;
   QTabWidget* tabs_ = nullptr;
   QLabel* summary_ = nullptr;
   TableView* table_ = nullptr;

@@ -3,19 +3,16 @@
 #include <QHelpEvent>
 #include <QKeyEvent>
 #include <QMouseEvent>
-#include <QPainter>
 #include <QToolTip>
 #include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/text.h"
 #include "ui/look/theme.h"
 #include "ui/models/edits.h"
 #include "ui/models/relaxation_model.h"
 #include "ui/models/strings.h"
 #include "ui/models/workspace.h"
-#include "ui/panels/marks.h"
 
 namespace tiltmap::ui {
 

@@ -2,20 +2,18 @@
 #pragma once
 
 #include <QWidget>
-#include <map>
 
 #include "ui/panels/panel.h"
 
 class QComboBox;
-class QGridLayout;
 class QLabel;
 class QPushButton;
-class QSlider;
 class QToolButton;
 
 namespace tiltmap::ui {
 
 class StepperModel;
+class StepperTransport;
 
 class StepperPanel : public QWidget {
   Q_OBJECT
@@ -26,17 +24,11 @@ class StepperPanel : public QWidget {
  private:
   QWidget* buildChoice();
   QWidget* buildParameters();
-  QWidget* buildTransport();
-  QWidget* buildNumbers();
-  QWidget* buildMotion();
   QWidget* buildDecision();
-  void addNumber(QGridLayout* grid, const QString& name, const QString& title, const QString& tip);
   void fillScans();
   void chooseFromBoxes();
   void refreshChoice();
-  void refreshPosition();
   void refreshState();
-  void showNumber(const QString& name, const QString& text);
 
   PanelContext context_;
   StepperModel& model_;
@@ -44,13 +36,7 @@ class StepperPanel : public QWidget {
   QToolButton* swap_;
   QLabel* roles_;
   QWidget* parameters_ = nullptr;
-  QToolButton *first_, *back_, *step_, *last_;
-  QPushButton* run_;
-  QSlider* slider_;
-  QLabel *iteration_, *state_, *attempt_;
-  std::map<QString, QLabel*> numbers_;
-  QLabel* motion_[3][4];
-  QLabel* motion_text_;
+  StepperTransport* transport_ = nullptr;
   QPushButton *accept_, *discard_;
   QLabel* hint_;
 };

@@ -13,17 +13,12 @@
 
 #include "ui/models/strings.h"
 #include "ui/models/workspace.h"
+#include "ui/panels/controls.h"
 #include "ui/panels/fold_box.h"
 
 namespace tiltmap::ui {
 
 namespace {
-
-void describe(QWidget* widget, const QString& name, const QString& accessible, const QString& tip) {
-  widget->setObjectName(name);
-  widget->setAccessibleName(accessible);
-  widget->setToolTip(tip);
-}
 
 double headingOf(const Pose& pose) {
   const Eigen::Vector3d h = pose.heading();
@@ -41,13 +36,6 @@ QDoubleSpinBox* number(QWidget* parent, const QString& name, const QString& text
   box->setKeyboardTracking(false);
   box->setAlignment(Qt::AlignRight);
   return box;
-}
-
-QLabel* wrapped(QWidget* parent, const QString& name) {
-  auto* label = new QLabel(parent);
-  label->setObjectName(name);
-  label->setWordWrap(true);
-  return label;
 }
 
 }  // namespace
@@ -96,7 +84,7 @@ QWidget* StepperStartBox::buildNumbers() {
   describe(ghost_, "stepper-ghost", "Show where registering would end",
            "A ghost of the moving scan, computed anew whenever the start changes");
   connect(ghost_, &QCheckBox::toggled, &model_, &StartModel::setGhostWanted);
-  ghost_text_ = wrapped(box, "stepper-ghost-text");
+  ghost_text_ = wrappedLabel(box, "stepper-ghost-text");
   grid->addWidget(reset_, 2, 0, 1, 4, Qt::AlignLeft);
   grid->addWidget(ghost_, 3, 0, 1, 4);
   grid->addWidget(ghost_text_, 4, 0, 1, 4);
@@ -118,7 +106,7 @@ QWidget* StepperStartBox::buildPoints() {
   points_->setSelectionBehavior(QAbstractItemView::SelectRows);
   points_->setSelectionMode(QAbstractItemView::SingleSelection);
   points_->setFixedHeight(104);
-  points_text_ = wrapped(box, "stepper-points-text");
+  points_text_ = wrappedLabel(box, "stepper-points-text");
   auto* row = new QHBoxLayout;
   row->setSpacing(8);
   use_points_ = new QPushButton("Use points", box);
@@ -160,7 +148,7 @@ QWidget* StepperStartBox::buildSweep() {
   row->addWidget(sweep_);
   row->addWidget(use_sweep_);
   row->addStretch(1);
-  sweep_text_ = wrapped(box, "stepper-sweep-text");
+  sweep_text_ = wrappedLabel(box, "stepper-sweep-text");
   column->addLayout(row);
   column->addWidget(sweep_text_);
   return box;

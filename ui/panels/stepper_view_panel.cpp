@@ -11,11 +11,13 @@
 
 #include "ui/actions/action_registry.h"
 #include "ui/look/empty_state.h"
+#include "ui/look/flow_layout.h"
 #include "ui/look/icons.h"
 #include "ui/look/theme.h"
 #include "ui/models/strings.h"
 #include "ui/models/study_model.h"
 #include "ui/models/workspace.h"
+#include "ui/panels/controls.h"
 #include "ui/panels/stepper_scene_widget.h"
 
 namespace tiltmap::ui {
@@ -29,19 +31,6 @@ Rgb rgbOf(const QColor& colour) {
 
 QColor colourOf(Rgb c) {
   return {c.r, c.g, c.b};
-}
-
-QToolButton* toggle(QWidget* parent, const QString& name, const QString& text, const QString& tip, bool on) {
-  auto* button = new QToolButton(parent);
-  button->setObjectName(name);
-  button->setAccessibleName(text);
-  button->setText(text);
-  button->setToolTip(tip);
-  button->setCheckable(true);
-  button->setChecked(on);
-  button->setAutoRaise(true);
-  button->setFocusPolicy(Qt::StrongFocus);
-  return button;
 }
 
 constexpr RejectReason kFates[] = {
@@ -78,7 +67,8 @@ QIcon fateIcon(RejectReason reason, const QColor& colour, double ratio) {
     painter.drawLine(QPointF(2.0 + 24.0 * from, 7.0), QPointF(2.0 + 24.0 * to, 7.0));
   painter.setPen(Qt::NoPen);
   painter.setBrush(colour);
-  painter.drawEllipse(QPointF(3.5, 7.0), 2.5, 2.5);
+  // Without a partner there is no line, and the dot stands alone.
+  painter.drawEllipse(QPointF(reason == RejectReason::NoPartner ? 14.0 : 3.5, 7.0), 2.5, 2.5);
   return QIcon(pixmap);
 }
 
@@ -155,20 +145,22 @@ QImage StepperViewPanel::picture() {
 
 QWidget* StepperViewPanel::buildBar() {
   auto* bar = new QWidget(this);
-  auto* row = new QHBoxLayout(bar);
+  // In a narrow view the buttons go on below the names of the scans.
+  auto* row = new FlowLayout(bar);
   row->setContentsMargins(8, 4, 8, 4);
   row->setSpacing(8);
   title_ = new QLabel(bar);
   title_->setObjectName("stepper-view-title");
-  title_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-  points_ = toggle(bar, "stepper-show-points", "Points", "The points of both scans", true);
-  patches_ =
-      toggle(bar, "stepper-show-patches", "Patches",
-             "Outlines of the plane patches that are paired, coloured by the fate of their pair", false);
-  found_ = toggle(bar, "stepper-as-found", "As found",
-                  "Show the moving scan where the step's pairs were found, before its motion", false);
-  tree_ = toggle(bar, "stepper-show-tree", "Tree",
-                 "The kD-tree's cells, and the leaves that the search for the picked pair looks into", false);
+  title_->setMinimumSize(120, fontMetrics().height() + 8);
+  points_ = toggleButton(bar, "stepper-show-points", "Points", "The points of both scans", true);
+  patches_ = toggleButton(bar, "stepper-show-patches", "Patches",
+                          "Outlines of the plane patches that are paired, coloured by the fate of their pair",
+                          false);
+  found_ = toggleButton(bar, "stepper-as-found", "As found",
+                        "Show the moving scan where the step's pairs were found, before its motion", false);
+  tree_ = toggleButton(bar, "stepper-show-tree", "Tree",
+                       "The kD-tree's cells, and the leaves that the search for the picked pair looks into",
+                       false);
   depth_ = new QSpinBox(bar);
   depth_->setObjectName("stepper-tree-depth");
   depth_->setAccessibleName("Depth of the cells shown");
@@ -176,13 +168,13 @@ QWidget* StepperViewPanel::buildBar() {
   depth_->setRange(0, 12);
   depth_->setValue(study_.treeDepth());
   depth_->setVisible(false);
-  adjust_ =
-      toggle(bar, "stepper-adjust", "Move start",
-             "Drag the handles, or use arrows, page up and down, comma and period, to move the start", false);
-  pick_points_ =
-      toggle(bar, "stepper-pick-points", "Pick points",
-             "Click the same places in both scans, the fixed one first: three pairs give a start", false);
-  row->addWidget(title_, 1);
+  adjust_ = toggleButton(
+      bar, "stepper-adjust", "Move start",
+      "Drag the handles, or use arrows, page up and down, comma and period, to move the start", false);
+  pick_points_ = toggleButton(
+      bar, "stepper-pick-points", "Pick points",
+      "Click the same places in both scans, the fixed one first: three pairs give a start", false);
+  row->addWidget(title_);
   for (QWidget* control :
        std::initializer_list<QWidget*>{points_, patches_, found_, tree_, depth_, adjust_, pick_points_})
     row->addWidget(control);
@@ -200,6 +192,8 @@ QWidget* StepperViewPanel::buildBar() {
   connect(adjust_, &QToolButton::toggled, this, [this](bool on) {
     if (on) pick_points_->setChecked(false);
     if (on) model_.goTo(0);
+    // Where it would end is what one moves it for; the box beside the numbers takes it away.
+    if (on) model_.start().setGhostWanted(true);
     view_->setAdjusting(on);
     if (on) view_->setFocus();
   });

@@ -18,6 +18,7 @@
 #include "ui/panels/controls.h"
 #include "ui/panels/measure_bar.h"
 #include "ui/panels/picture_bar.h"
+#include "ui/panels/relaxation_overlay.h"
 #include "ui/panels/scene_widget.h"
 #include "ui/panels/slice_bar.h"
 #include "ui/window/file_dialogs.h"
@@ -127,6 +128,7 @@ View3dPanel::View3dPanel(const PanelContext& context, QWidget* parent)
   applyTheme();
   applySettings();
   refreshScans();
+  new RelaxationOverlay(context, *scene_, *view_, *compare_, *compare_bar_, this);
 }
 
 View3dPanel::~View3dPanel() {
@@ -177,7 +179,8 @@ void View3dPanel::applySettings() {
 
 SceneColours View3dPanel::usualColours() const {
   const ThemeColours& c = context_.theme.colours();
-  return {rgbOf(c.view_top), rgbOf(c.view_bottom), rgbOf(c.view_text), rgbOf(c.view_grid), rgbOf(c.no_data)};
+  return {rgbOf(c.view_top), rgbOf(c.view_bottom), rgbOf(c.view_text), rgbOf(c.view_grid),
+          rgbOf(c.no_data),  rgbOf(c.good),        rgbOf(c.accent),    rgbOf(c.warning)};
 }
 
 void View3dPanel::applyTheme() {

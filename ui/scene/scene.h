@@ -13,6 +13,7 @@
 
 #include "core/products/colour.h"
 #include "core/project/project_snapshot.h"
+#include "ui/models/scan_display.h"
 #include "ui/models/selection.h"
 #include "ui/scene/point_box.h"
 #include "ui/scene/scan_points.h"
@@ -30,6 +31,7 @@ struct SceneColours {
   Rgb top{45, 51, 57}, bottom{20, 23, 26};
   Rgb text{221, 227, 231}, grid{75, 84, 92};
   Rgb no_data{110, 116, 122};
+  Rgb active{122, 201, 118}, queued{53, 178, 196}, aligning{240, 180, 60};  // sets of a relaxation
   static SceneColours dark() { return {}; }
   static SceneColours white() {
     return {{255, 255, 255}, {255, 255, 255}, {28, 34, 39}, {190, 198, 204}, {150, 155, 160}};
@@ -51,6 +53,15 @@ struct SceneSettings {
   bool axes = true;
   bool shaded = false;  // by depth: edges and hollows stand out
   bool operator==(const SceneSettings&) const = default;
+};
+
+// What a relaxation that runs makes of the stops, marked as on the site map: square where it never moves,
+// hollow in the static set, ringed in the queue, with two rings while it is aligned.
+struct SceneRoles {
+  std::map<ScanId, RelaxationRole> of;
+  std::vector<ScanId> onto;  // what the scan being aligned is registered onto: lines to it
+  std::vector<std::pair<RelaxationRole, std::string>> legend;  // in words, from the top down
+  bool operator==(const SceneRoles&) const = default;
 };
 
 // At least so many points are drawn while the camera moves, if there are as many.
@@ -100,6 +111,13 @@ class Scene {
   double divider() const;
   void setShowsBefore(bool before);
   bool showsBefore() const;
+
+  // Over the points; scans of the static set are drawn pale. Empty: none.
+  void setRoles(SceneRoles roles);
+  // Where stops would be without some links: rings tied to where they are.
+  void setGhosts(std::map<ScanId, Pose> world_from_scan);
+  // How a comparison names a stage, where not by its own name.
+  void setStageWords(std::map<Stage, std::string> words);
 
   // Only points within are drawn, picked and framed. World frame, upright.
   void setSlice(const std::optional<PointBox>& box);

@@ -170,15 +170,16 @@ void Scene::Parts::writeOver(OverlayContents& contents, const Scene& scene) cons
   if (compare == SceneCompare::Wipe) {
     contents.divider = divider;
     contents.divider_colour = colours.text;
-    contents.left_of_divider = utf8(stageTitle(before));
-    contents.right_of_divider = utf8(stageTitle(stage));
+    contents.left_of_divider = wordsOf(before);
+    contents.right_of_divider = wordsOf(stage);
   }
-  if (compare == SceneCompare::Blink) contents.corner = utf8(stageTitle(shows_before ? before : stage));
+  if (compare == SceneCompare::Blink) contents.corner = wordsOf(shows_before ? before : stage);
   const std::vector<Vector3d> places = handles();
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (std::abs(camera.forward()[static_cast<int>(k / 2)]) > 0.97) continue;
     contents.handles.emplace_back(scene.pixelOf(places[k]), lightGround() ? kBoxOnLight : kBoxColour);
   }
+  writeRoles(contents, scene);
   if (measured.size() == 2) {
     const Vector3d by = measured[1] - measured[0];
     const Vector2d at = scene.pixelOf(Vector3d(0.5 * (measured[0] + measured[1])));

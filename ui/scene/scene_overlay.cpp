@@ -1,6 +1,7 @@
 #include "ui/scene/scene_overlay.h"
 
 #include <cmath>
+#include <numbers>
 #include <vtkActor2D.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -133,11 +134,59 @@ void SceneOverlay::show(const OverlayContents& contents) {
             Vector2d(contents.width - kMargin * contents.pixel_ratio,
                      contents.height - 18.0 * contents.pixel_ratio),
             1, contents.text, 13.0 * contents.pixel_ratio);
+    for (const OverlayLine& tie : contents.lines) line(tie.from, tie.to, tie.colour);
+    for (const OverlayMark& mark : contents.marks) drawMark(mark, contents.pixel_ratio);
+    drawLegend(contents);
     drawHandles(contents);
     for (const OverlayLabel& label : contents.labels)
       write(label.text, label.pixel, 0, label.colour, 13.0 * contents.pixel_ratio);
   }
   finish(2.0 * contents.pixel_ratio);
+}
+
+// Convex.
+void SceneOverlay::polygon(const std::vector<Vector2d>& corners, Rgb colour, bool full) {
+  if (!full) {
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      line(corners[k], corners[(k + 1) % corners.size()], colour);
+    return;
+  }
+  std::vector<vtkIdType> ids;
+  for (const Vector2d& corner : corners)
+    ids.push_back(shapes_->points->InsertNextPoint(corner.x(), corner.y(), 0.0));
+  shapes_->quads->InsertNextCell(static_cast<vtkIdType>(ids.size()), ids.data());
+  const unsigned char rgb[3] = {colour.r, colour.g, colour.b};
+  shapes_->quad_colours->InsertNextTypedTuple(rgb);
+}
+
+void SceneOverlay::drawMark(const OverlayMark& mark, double scale) {
+  const auto around = [&](double radius, int corners, double first_rad) {
+    std::vector<Vector2d> places;
+    for (int k = 0; k < corners; ++k) {
+      const double angle = first_rad + 2.0 * std::numbers::pi * k / corners;
+      places.emplace_back(mark.pixel + radius * scale * Vector2d(std::cos(angle), std::sin(angle)));
+    }
+    return places;
+  };
+  const auto shape = mark.square ? around(mark.radius_px * std::numbers::sqrt2, 4, std::numbers::pi / 4)
+                                 : around(mark.radius_px, 20, 0.0);
+  if (mark.full) polygon(shape, mark.fill, true);
+  polygon(shape, mark.ring, false);
+  for (int k = 0; k < mark.rings; ++k)
+    polygon(around(mark.radius_px + 3.5 + 4.0 * k, 28, 0.0), mark.ring, false);
+}
+
+void SceneOverlay::drawLegend(const OverlayContents& contents) {
+  const double k = contents.pixel_ratio;
+  double y = contents.height - (contents.corner.empty() ? 20.0 : 42.0) * k;
+  for (const auto& [mark, text] : contents.legend) {
+    OverlayMark placed = mark;
+    placed.pixel = Vector2d(contents.width - (kMargin + 4.0) * k, y);
+    placed.radius_px = 4.0;
+    drawMark(placed, 0.8 * k);
+    write(text, placed.pixel - Vector2d(18.0 * k, 0.0), 1, contents.text, 13.0 * k);
+    y -= 22.0 * k;
+  }
 }
 
 void SceneOverlay::drawTriad(const OverlayContents& contents) {

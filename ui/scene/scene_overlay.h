@@ -26,6 +26,21 @@ struct OverlayLabel {
   Rgb colour{255, 255, 255};
 };
 
+// A mark of constant size: a disc or a square, full or not, with rings around it.
+struct OverlayMark {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  Rgb fill, ring;
+  bool full = true;
+  bool square = false;
+  int rings = 0;
+  double radius_px = 5.5;  // logical
+};
+
+struct OverlayLine {
+  Eigen::Vector2d from = Eigen::Vector2d::Zero(), to = Eigen::Vector2d::Zero();
+  Rgb colour;
+};
+
 struct OverlayContents {
   Rgb text{255, 255, 255};
   Rgb ground{0, 0, 0};  // shines through behind text
@@ -46,6 +61,9 @@ struct OverlayContents {
   std::string left_of_divider, right_of_divider;
   std::string corner;  // top right: what is being shown in turn
   std::vector<std::pair<Eigen::Vector2d, Rgb>> handles;
+  std::vector<OverlayMark> marks;
+  std::vector<OverlayLine> lines;
+  std::vector<std::pair<OverlayMark, std::string>> legend;  // top right, from the top down
 };
 
 class SceneOverlay {
@@ -68,6 +86,9 @@ class SceneOverlay {
   void drawBar(const OverlayContents& contents);
   void drawDivider(const OverlayContents& contents);
   void drawHandles(const OverlayContents& contents);
+  void drawMark(const OverlayMark& mark, double scale);
+  void drawLegend(const OverlayContents& contents);
+  void polygon(const std::vector<Eigen::Vector2d>& corners, Rgb colour, bool full);
 
   struct Shapes;
   vtkRenderer& renderer_;

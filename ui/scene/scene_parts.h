@@ -109,6 +109,9 @@ struct Scene::Parts {
   bool shows_before = false;  // blinking
   std::optional<PointBox> slice;
   std::vector<Eigen::Vector3d> measured;
+  SceneRoles roles;
+  std::map<ScanId, Pose> ghosts;
+  std::map<Stage, std::string> stage_words;
 
   std::array<SceneLines, 2> paths;
   SceneLines grid, hovered, picked, box, measure;
@@ -140,7 +143,12 @@ struct Scene::Parts {
     const Rgb colour = snapshot && cloud.index < snapshot->scans().size()
                            ? scanColour(snapshot->scans()[cloud.index], cloud.index)
                            : scanColour(cloud.index);
-    return lightGround() ? mixed(colour, {0, 0, 0}, 0.25) : colour;
+    const Rgb ink = lightGround() ? mixed(colour, {0, 0, 0}, 0.25) : colour;
+    return isPale(cloud.points.scan) ? mixed(ink, colours.no_data, 0.8) : ink;
+  }
+  bool isPale(ScanId scan) const {
+    const auto role = roles.of.find(scan);
+    return role != roles.of.end() && role->second == RelaxationRole::Waiting;
   }
 
   SceneCloud* cloudOf(ScanId scan) const {
@@ -171,6 +179,8 @@ struct Scene::Parts {
   std::vector<Eigen::Vector3d> handles() const;
   void lookAtPoints();
   void writeOver(OverlayContents& contents, const Scene& scene) const;
+  void writeRoles(OverlayContents& contents, const Scene& scene) const;
+  std::string wordsOf(Stage stage) const;
   void placeLines();
   void placeNumbers(double length_m);
   void thinNumbers(const Scene& scene);

@@ -138,6 +138,8 @@ void MainWindow::showOperation(const QString& operation, const ParameterValues& 
   if (!dialog) {
     dialog = new OperationDialog(*found, *workspace_, theme_, this);
     dialog->setAttribute(Qt::WA_DeleteOnClose);
+    // Where it is watched, compared and decided.
+    connect(dialog, &OperationDialog::proposalStarted, this, [this] { showPanel("relax"); });
   }
   dialog->setValues(values);
   dialog->show();

@@ -25,6 +25,11 @@ QString verb(const Operation& operation) {
   return qt(operation.title()).section(' ', 0, 0);
 }
 
+// Its result is looked at before it is stored: every scan may move.
+bool endsAsProposal(const Operation& operation) {
+  return operation.id() == "relax";
+}
+
 }  // namespace
 
 OperationDialog::OperationDialog(const Operation& operation, Workspace& workspace, const Theme& theme,
@@ -82,6 +87,10 @@ OperationDialog::OperationDialog(const Operation& operation, Workspace& workspac
   scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   scroll->setFocusPolicy(Qt::NoFocus);
 
+  auto* proposal = new QLabel("The result is a proposal: nothing is stored before it is accepted.", this);
+  proposal->setObjectName("proposal");
+  proposal->setWordWrap(true);
+  proposal->setVisible(endsAsProposal(operation));
   check_->setObjectName("check");
   check_->setWordWrap(true);
   reset_->setToolTip("Every parameter back to what the preset says");
@@ -106,6 +115,7 @@ OperationDialog::OperationDialog(const Operation& operation, Workspace& workspac
   layout->addLayout(top);
   layout->addWidget(search);
   layout->addWidget(scroll, 1);
+  layout->addWidget(proposal);
   layout->addWidget(check_);
   layout->addLayout(buttons);
 
@@ -163,8 +173,11 @@ void OperationDialog::run() {
   request.operation = &operation_;
   request.preset = model_->preset();
   request.values = model_->changes();
+  request.ask = endsAsProposal(operation_);
   workspace_.preferences().setLastParameters(qt(operation_.id()), model_->last());
-  if (workspace_.start(request)) close();
+  if (!workspace_.start(request)) return;
+  if (request.ask) Q_EMIT proposalStarted();
+  close();
 }
 
 }  // namespace tiltmap::ui

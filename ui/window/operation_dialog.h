@@ -31,6 +31,9 @@ class OperationDialog : public QDialog {
   void setValues(const ParameterValues& values);
   void run();
 
+ Q_SIGNALS:
+  void proposalStarted();  // the result waits for a decision when it comes
+
  private:
   void refresh();
   void refreshCheck();

@@ -12,6 +12,7 @@
 #include "ui/look/theme.h"
 #include "ui/models/log.h"
 #include "ui/models/log_model.h"
+#include "ui/models/relaxation_model.h"
 #include "ui/models/strings.h"
 #include "ui/panels/depth_image_panel.h"
 #include "ui/panels/scene_widget.h"
@@ -43,7 +44,9 @@ void settle(Workspace& workspace, const QWidget& shown) {
            std::ranges::any_of(shown.findChildren<Panel*>(), &Panel::isReading);
   };
   const auto busy = [&] {
-    return workspace.jobs().busy() || workspace.residuals().isComputing() ||
+    const JobStatus* job = workspace.jobs().current();
+    const bool computes = job && job->phase == JobPhase::Running && !workspace.relaxation().isHolding();
+    return computes || workspace.residuals().isComputing() ||
            reads(static_cast<View3dPanel*>(nullptr)) || reads(static_cast<DepthImagePanel*>(nullptr));
   };
   while (clock.elapsed() < 200 || (busy() && clock.elapsed() < 60000))
@@ -107,6 +110,27 @@ Status step(StepperModel& stepper, const ProjectSnapshot& snapshot, const Window
   return {};
 }
 
+// Starts a relaxation and waits until it is held, or proposes its result.
+Status relax(Workspace& workspace, const WindowScreenshot::Relaxed& wanted) {
+  RelaxationModel& relaxation = workspace.relaxation();
+  JobRequest request;
+  request.operation = operations().find("relax");
+  request.preset = qt(wanted.preset);
+  request.ask = true;
+  request.title = "Relax all scans (" + request.preset + ")";
+  relaxation.holdNextAt(wanted.step.value_or(0));
+  const auto job = workspace.start(request);
+  const auto over = [&] { return !job || workspace.jobs().find(*job)->over(); };
+  while (!over() && !relaxation.isProposal() && !relaxation.isHolding())
+    QApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 20);
+  if (over())
+    return fail("the relaxation did not come to a result", "--relax", "`tiltmap relax` tells why not");
+  if (wanted.step && relaxation.isProposal())
+    return fail("there is no step " + std::to_string(*wanted.step), "--relax-step",
+                "the relaxation ends after " + std::to_string(relaxation.step()));
+  return {};
+}
+
 Result<QImage> shoot(MainWindow& window, const WindowScreenshot& settings) {
   window.resize(settings.width_px, settings.height_px);
   window.show();
@@ -117,6 +141,8 @@ Result<QImage> shoot(MainWindow& window, const WindowScreenshot& settings) {
             step(window.workspace().stepper(), *window.workspace().snapshot(), *settings.stepped);
         !stepped)
       return fail(stepped.error());
+  if (settings.relaxed)
+    if (Status relaxed = relax(window.workspace(), *settings.relaxed); !relaxed) return fail(relaxed.error());
   settle(window.workspace(), window);
   if (settings.panel == "window") return pictureOf(window);
   for (const PanelInfo& info : panels()) {

@@ -31,6 +31,11 @@ struct WindowScreenshot {
   std::optional<Stepped> stepped;  // what the ICP stepper shows, run to its end
   std::string colouring = "scan";  // of the 3D view, as its colour box has it
   std::string quantity = "range";  // of the depth image
+  struct Relaxed {
+    std::string preset = "default";
+    std::optional<int> step;  // held within this step (1: the first); nothing: its proposal
+  };
+  std::optional<Relaxed> relaxed;  // a relaxation that is watched; nothing of it is stored
   std::optional<Stage> stage;      // whose poses place the scans; nothing: the latest
 };
 

@@ -18,9 +18,25 @@ void RelaxationFeed::pause() {
 void RelaxationFeed::resume() {
   {
     const std::lock_guard lock(mutex_);
-    paused_ = false;
+    paused_ = hold_after_step_ = false;
+    hold_at_ = 0;
   }
   resumed_.notify_all();
+}
+
+void RelaxationFeed::stepOn() {
+  {
+    const std::lock_guard lock(mutex_);
+    paused_ = false;
+    hold_after_step_ = true;
+    hold_at_ = 0;
+  }
+  resumed_.notify_all();
+}
+
+void RelaxationFeed::holdAt(int step) {
+  const std::lock_guard lock(mutex_);
+  hold_at_ = step;
 }
 
 bool RelaxationFeed::isPaused() const {
@@ -50,6 +66,10 @@ void RelaxationFeed::at(const RelaxationState& state, const std::stop_token& sto
   {
     std::unique_lock lock(mutex_);
     news_.now = state;
+    if (hold_at_ > 0 && state.step >= hold_at_ && state.iteration > 0) {
+      paused_ = true;
+      hold_at_ = 0;
+    }
     notify(lock);
   }
   waitWhilePaused(stop);
@@ -59,6 +79,11 @@ void RelaxationFeed::stepped(RelaxationFrame frame, const std::stop_token& stop)
   {
     std::unique_lock lock(mutex_);
     news_.now = frame.state;
+    if (hold_after_step_ || (hold_at_ > 0 && frame.step.number >= hold_at_)) {
+      paused_ = true;
+      hold_after_step_ = false;
+      hold_at_ = 0;
+    }
     news_.frames.push_back(std::move(frame));
     notify(lock);
   }

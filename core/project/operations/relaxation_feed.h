@@ -53,6 +53,11 @@ class RelaxationFeed {
   // a joint step, whichever comes first; what is computed does not depend on it. A stop ends the pause.
   void pause();
   void resume();
+  // Goes on, and pauses again after the next whole step.
+  void stepOn();
+  // Pauses by itself within this step (1: the first): where a registration in it has made its first
+  // iteration, else at its end. Said before the run it holds at the same place every time.
+  void holdAt(int step);
   bool isPaused() const;
   // The worker has noticed the pause and waits.
   bool isWaiting() const;
@@ -71,6 +76,8 @@ class RelaxationFeed {
   RelaxationNews news_;
   bool told_ = false;  // that there is news
   bool paused_ = false;
+  bool hold_after_step_ = false;
+  int hold_at_ = 0;  // a step; 0: none
   int waiting_ = 0;  // threads that do
   Notify notify_;
 };

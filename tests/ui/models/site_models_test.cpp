@@ -168,4 +168,13 @@ TEST_F(SiteModelsTest, WhatIfSaysWhatTheOthersSayAndChangesNothing) {
   EXPECT_EQ(table.summary(), "5 links: 4 good, 1 disabled");
 }
 
+TEST_F(SiteModelsTest, AQuestionEndsWithTheTableThatAskedIt) {
+  auto table = std::make_unique<LinkTableModel>(workspace);
+  must(table->ask({link(4)}));
+  EXPECT_FALSE(workspace.display().ghosts().empty());
+  table.reset();
+  EXPECT_TRUE(workspace.display().ghosts().empty());
+  EXPECT_TRUE(workspace.display().leftOut().empty());
+}
+
 }  // namespace tiltmap::test

@@ -251,6 +251,23 @@ TEST_F(StepperModelTest, TheTableHasARowAnIteration) {
   EXPECT_EQ(table.rowCount(), 0);
 }
 
+TEST_F(StepperModelTest, NothingIsAcceptedWhileTheProjectIsAtWork) {
+  runToEnd();
+  ASSERT_TRUE(stepper().canAccept());
+  ui::JobRequest request;
+  request.operation = operations().find("relax");
+  request.ask = true;
+  const int job = *workspace.start(request);
+  EXPECT_FALSE(stepper().canAccept());
+  EXPECT_TRUE(stepper().acceptHint().contains("Other work"));
+  EXPECT_FALSE(stepper().accept());
+  ASSERT_TRUE(waitUntil([&] { return workspace.jobs().find(job)->phase == ui::JobPhase::Waiting; }));
+  EXPECT_FALSE(stepper().canAccept()) << "the proposal was made from the poses as they are";
+  workspace.jobs().discard(job);
+  EXPECT_TRUE(stepper().canAccept());
+  must(stepper().accept());
+}
+
 class StartModelTest : public StepperModelTest {
  protected:
   ui::StartModel& start() { return stepper().start(); }
@@ -279,6 +296,28 @@ TEST_F(StartModelTest, TheGhostIsTheResultOfTheLatestStart) {
   EXPECT_EQ(start().ghost()->steps.front().motion.translation().allFinite(), true);
   start().setGhostWanted(false);
   EXPECT_FALSE(start().ghost());
+}
+
+TEST_F(StartModelTest, TheGhostFollowsWhileTheStartIsStillMoved) {
+  start().setGhostWanted(true);
+  int ghosts = 0, moves = 0;
+  Pose before;
+  // Without a pause between two moves, as a drag has none.
+  ASSERT_TRUE(waitUntil([&] {
+    start().nudge({0.002, 0.0, 0.0}, 0.0);
+    ++moves;
+    if (start().ghost() && !(start().ghost()->fixed_from_moving == before)) {
+      before = start().ghost()->fixed_from_moving;
+      ++ghosts;
+    }
+    return ghosts == 3;
+  }));
+  EXPECT_GT(moves, 3);
+  ASSERT_TRUE(waitUntil([this] { return !start().ghostBusy(); }));
+  EXPECT_EQ(start().ghost()->fixed_from_moving, byCore(start().start()).fixed_from_moving)
+      << "and ends at that of the last";
+  stepper().choose(id(0), id(2));
+  EXPECT_FALSE(start().ghost()) << "that was another pair";
 }
 
 TEST_F(StartModelTest, PointPairsInAnyOrderGiveAStart) {

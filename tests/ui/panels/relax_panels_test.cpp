@@ -354,5 +354,60 @@ TEST_F(RelaxPanelsTest, PanelsLookAsTheyDid) {
   look(new LinksPanel(context), {720, 240}, "links");
 }
 
+TEST_F(RelaxPanelsTest, PanelsLookAsTheyDidWhileItRuns) {
+  preferences.setTheme(ThemeChoice::Dark);
+  workspace().relaxation().holdNextAt(2);
+  choose("relax-preset", "thesis");
+  click("relax-run");
+  ASSERT_TRUE(waitUntil([&] { return workspace().relaxation().isHolding(); }));
+  settle();
+  const PanelContext context{workspace(), window->actions(), theme};
+  const auto look = [&](QWidget* panel, QSize size, const char* name) {
+    panel->setAutoFillBackground(true);
+    panel->resize(size);
+    panel->show();
+    settle();
+    expectLikePanelBaseline(panel->grab().toImage(), TILTMAP_SOURCE_DIR, name);
+    delete panel;
+  };
+  look(new SiteMapPanel(context), {480, 320}, "sitemap-held");
+  look(new RelaxationPanel(context), {480, 320}, "relax-held");
+  click("relax-step");
+  ASSERT_TRUE(waitUntil([&] { return workspace().relaxation().isHolding(); }));
+  click("relax-pause");
+  ASSERT_TRUE(proposed());
+  look(new RelaxationPanel(context), {480, 320}, "relax-proposal");
+  click("relax-discard");
+}
+
+TEST_F(RelaxPanelsTest, AProposalIsComparedInTheView) {
+  auto* compare = find<QToolButton>("view3d-compare");
+  click("relax-run");
+  ASSERT_TRUE(proposed());
+  click("relax-wipe");
+  EXPECT_TRUE(compare->isChecked());
+  EXPECT_EQ(find<QComboBox>("compare-before")->currentData().toString(), "pairwise");
+  EXPECT_EQ(find<QComboBox>("compare-how")->currentData().toString(), "wipe");
+  EXPECT_TRUE(find<QToolButton>("relax-wipe")->isChecked());
+  EXPECT_FALSE(find<QToolButton>("relax-after")->isChecked());
+  click("relax-blink");
+  EXPECT_EQ(find<QComboBox>("compare-how")->currentData().toString(), "blink");
+  click("relax-before");
+  EXPECT_FALSE(compare->isChecked()) << "one at a time again";
+  click("relax-wipe");
+  click("relax-after");
+  EXPECT_FALSE(compare->isChecked());
+  click("relax-wipe");
+  // Ended in the view itself: the decision says so.
+  QTest::mouseClick(compare, Qt::LeftButton);
+  settle();
+  EXPECT_FALSE(find<QToolButton>("relax-wipe")->isChecked());
+  EXPECT_TRUE(find<QToolButton>("relax-after")->isChecked());
+  click("relax-wipe");
+  click("relax-accept");
+  EXPECT_FALSE(compare->isChecked());
+  EXPECT_TRUE(snapshot().hasStage(Stage::Relaxed));
+}
+
 }  // namespace
 }  // namespace tiltmap::test

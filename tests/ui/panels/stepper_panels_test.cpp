@@ -3,96 +3,23 @@
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QLineEdit>
-#include <QMouseEvent>
-#include <QOpenGLContext>
 #include <QPushButton>
 #include <QSlider>
 #include <QTabWidget>
 #include <QTableView>
-#include <QTableWidget>
 #include <QToolButton>
 
 #include <gtest/gtest.h>
 
-#include "core/world/experiment.h"
-#include "tests/ui/support/picture_baseline.h"
-#include "tests/ui/support/window_fixture.h"
+#include "tests/ui/support/stepper_window.h"
 #include "ui/models/study_model.h"
 #include "ui/panels/stepper_panel.h"
 #include "ui/panels/stepper_plots.h"
-#include "ui/panels/stepper_view_panel.h"
 
 namespace tiltmap::test {
 namespace {
 
-const std::vector<SimulatedStop>& stops() {
-  static const std::vector<SimulatedStop> made = must(simulateExperiment(ExperimentId::Exp2Fixed, 1, 3, 2));
-  return made;
-}
-
-class StepperPanelsTest : public WindowTest {
- protected:
-  void SetUp() override {
-    must(workspace().session().create(ui::qt(folder / "s.tiltmap")));
-    std::vector<Scan> scans;
-    for (const SimulatedStop& stop : stops()) scans.push_back(stop.scan);
-    must(workspace().session().apply(importEdit(std::move(scans))));
-    settle();
-    ASSERT_TRUE(trigger("stepper.open"));
-    stepper().setPace(0);
-    settle();
-    view = qobject_cast<ui::StepperViewPanel*>(window->docks().panel("stepper-view"));
-    ASSERT_NE(view, nullptr);
-  }
-  ui::StepperModel& stepper() { return workspace().stepper(); }
-  bool waitFor(const std::function<bool()>& condition) { return waitUntil(condition); }
-  void stepByMouse() {
-    const int before = stepper().count();
-    click("stepper-step");
-    ASSERT_TRUE(waitFor([&] { return stepper().count() == before + 1; }));
-    settle();
-  }
-  void runByMouse() {
-    click("stepper-run");
-    ASSERT_TRUE(waitFor([&] { return stepper().isEnded(); }));
-    settle();
-  }
-  QString text(const QString& name) { return find<QLabel>(name)->text(); }
-  void choose(const QString& box, int index) {
-    auto* combo = find<QComboBox>(box);
-    ASSERT_NE(combo, nullptr);
-    combo->setFocus();
-    combo->setCurrentIndex(index);
-    Q_EMIT combo->activated(index);
-    settle();
-  }
-  void open(const QString& fold) {
-    auto* button = find<QToolButton>(fold);
-    ASSERT_NE(button, nullptr);
-    if (!button->isChecked()) QTest::mouseClick(button, Qt::LeftButton);
-    settle();
-  }
-  bool canDraw() {
-    QOpenGLContext context;
-    return context.create() && !view->picture().isNull();
-  }
-  // The points of both scans are there to be clicked.
-  bool loaded() {
-    return waitFor([this] { return view->layer().pickPoint(true, {200, 150}, 1e5).has_value(); });
-  }
-  void send(QWidget* widget, QEvent::Type type, const QPointF& place, Qt::MouseButton button,
-            Qt::MouseButtons buttons) {
-    QMouseEvent event(type, place, widget->mapToGlobal(place.toPoint()), button, buttons, Qt::NoModifier);
-    QApplication::sendEvent(widget, &event);
-    settle();
-  }
-  QPointF placeOf(const Eigen::Vector2d& pixel) {
-    const double ratio = view->view()->devicePixelRatioF();
-    return {pixel.x() / ratio, view->view()->height() - pixel.y() / ratio};
-  }
-
-  ui::StepperViewPanel* view = nullptr;
-};
+using StepperPanelsTest = StepperWindowTest;
 
 TEST_F(StepperPanelsTest, StepBackRunSliderAndAcceptByMouse) {
   EXPECT_EQ(window->perspective(), ui::Perspective::Register);
@@ -274,163 +201,6 @@ TEST_F(StepperPanelsTest, SlicesAreMatchedAndCompared) {
   EXPECT_TRUE(text("stepper-slice-text").contains("of height"));
   find<QDoubleSpinBox>("stepper-slice-height")->setValue(1.5);
   EXPECT_FALSE(study.slices());
-}
-
-TEST_F(StepperPanelsTest, APairIsPickedAndExplainedAndItsTreeShown) {
-  if (!canDraw()) GTEST_SKIP() << "no OpenGL";
-  ASSERT_TRUE(loaded());
-  stepByMouse();
-  (void)view->picture();
-  EXPECT_EQ(view->layer().linesDrawn(),
-            stepper().current()->pairs.size() -
-                stepper().current()->report.rejected[static_cast<std::size_t>(RejectReason::NoPartner)]);
-  // The middle of a kept pair as it is drawn.
-  std::optional<QPointF> place;
-  for (const TracedPair& pair : stepper().pairs()) {
-    if (!pair.pair.kept()) continue;
-    const Eigen::Vector3d middle = 0.5 * (stepper().pose() * pair.moving_point + pair.fixed_point);
-    place = placeOf(view->scene().pixelOf(middle));
-    if (view->view()->rect().adjusted(20, 20, -20, -20).contains(place->toPoint())) break;
-  }
-  ASSERT_TRUE(place);
-  QTest::mouseClick(view->view(), Qt::LeftButton, {}, place->toPoint());
-  settle();
-  ASSERT_TRUE(stepper().picked());
-  EXPECT_EQ(text("stepper-picked"), stepper().pickedSentence());
-  click("stepper-show-tree");
-  ui::StudyModel& study = ui::StudyModel::of(stepper());
-  ASSERT_TRUE(study.visit());
-  EXPECT_TRUE(text("stepper-picked").contains("compared"));
-  EXPECT_TRUE(text("stepper-picked").contains("by direction"));  // the default preset searches no tree
-  const QImage with = view->picture();
-  click("stepper-show-tree");
-  EXPECT_NE(view->picture(), with);
-  // A fate that is not shown is not drawn.
-  const std::size_t drawn = view->layer().linesDrawn();
-  QTest::mouseClick(find<QCheckBox>("stepper-fate-0"), Qt::LeftButton, {}, QPoint(8, 8));
-  settle();
-  EXPECT_EQ(view->layer().linesDrawn() + stepper().current()->report.pairs, drawn);
-}
-
-TEST_F(StepperPanelsTest, TheGizmoAndTheKeysMoveTheStart) {
-  if (!canDraw()) GTEST_SKIP() << "no OpenGL";
-  ASSERT_TRUE(loaded());
-  click("stepper-adjust");
-  (void)view->picture();
-  const Pose before = stepper().start().start();
-  const QPointF handle = placeOf(view->layer().handlePixel(ui::GizmoHandle::X));
-  const QPointF far = handle + (handle - placeOf(view->scene().pixelOf(before.translation())));
-  send(view->view(), QEvent::MouseButtonPress, handle, Qt::LeftButton, Qt::LeftButton);
-  send(view->view(), QEvent::MouseMove, 0.5 * (handle + far), Qt::NoButton, Qt::LeftButton);
-  send(view->view(), QEvent::MouseMove, far, Qt::NoButton, Qt::LeftButton);
-  send(view->view(), QEvent::MouseButtonRelease, far, Qt::LeftButton, Qt::NoButton);
-  const Eigen::Vector3d shift = stepper().start().start().translation() - before.translation();
-  EXPECT_GT(shift.x(), 0.1);
-  EXPECT_NEAR(shift.y(), 0.0, 1e-9);
-  EXPECT_NEAR(shift.z(), 0.0, 1e-9);
-  (void)view->picture();
-  const QPointF ring = placeOf(view->layer().handlePixel(ui::GizmoHandle::Turn));
-  send(view->view(), QEvent::MouseButtonPress, ring, Qt::LeftButton, Qt::LeftButton);
-  send(view->view(), QEvent::MouseMove, ring + QPointF(14, 4), Qt::NoButton, Qt::LeftButton);
-  send(view->view(), QEvent::MouseButtonRelease, ring + QPointF(14, 4), Qt::LeftButton, Qt::NoButton);
-  EXPECT_GT(difference(stepper().start().start(), before).rotation_rad, 1.0 * kDegree);
-
-  const Pose here = stepper().start().start();
-  const auto moved = [&] {
-    return Eigen::Vector3d(stepper().start().start().translation() - here.translation());
-  };
-  QTest::keyClick(view->view(), Qt::Key_Right);
-  EXPECT_NEAR(moved().x(), 0.1, 1e-9);
-  QTest::keyClick(view->view(), Qt::Key_Up, Qt::ShiftModifier);
-  EXPECT_NEAR(moved().y(), 0.01, 1e-9);
-  QTest::keyClick(view->view(), Qt::Key_PageDown);
-  EXPECT_NEAR(moved().z(), -0.1, 1e-9);
-  QTest::keyClick(view->view(), Qt::Key_Comma);
-  EXPECT_NEAR(difference(stepper().start().start(), here).rotation_rad, 1.0 * kDegree, 1e-9);
-  click("stepper-adjust");
-  const Pose after = stepper().start().start();
-  QTest::keyClick(view->view(), Qt::Key_Right);  // turns the view again
-  EXPECT_EQ(stepper().start().start(), after);
-}
-
-TEST_F(StepperPanelsTest, PointsArePickedInBothScansAndMakeAStart) {
-  if (!canDraw()) GTEST_SKIP() << "no OpenGL";
-  ASSERT_TRUE(loaded());
-  open("stepper-start");
-  click("stepper-pick-points");
-  (void)view->picture();
-  EXPECT_TRUE(text("stepper-picked").contains("fixed (grey)"));
-  const QRect inside = view->view()->rect();
-  for (int k = 0; k < 6; ++k) {
-    const bool of_fixed = k % 2 == 0;
-    // Three different places, each as near to a point as the view has one.
-    const QPointF wish(inside.width() * (0.35 + 0.12 * (k / 2)), inside.height() * (k / 2 == 1 ? 0.45 : 0.6));
-    const double ratio = view->view()->devicePixelRatioF();
-    const Eigen::Vector2d pixel(wish.x() * ratio, (view->view()->height() - wish.y()) * ratio);
-    const auto point = view->layer().pickPoint(of_fixed, pixel, 1e5);
-    ASSERT_TRUE(point);
-    const Pose pose = of_fixed ? Pose() : stepper().pose();
-    QTest::mouseClick(view->view(), Qt::LeftButton, {},
-                      placeOf(view->scene().pixelOf(pose * *point)).toPoint());
-    settle();
-  }
-  EXPECT_EQ(stepper().start().pointPairs().size(), 3U);
-  EXPECT_EQ(find<QTableWidget>("stepper-points")->rowCount(), 3);
-  ASSERT_TRUE(stepper().start().pointPairFit());
-  EXPECT_EQ(find<QTableWidget>("stepper-points")->item(0, 1)->text(),
-            QString::number(1e3 * stepper().start().pointPairFit()->residual_m[0], 'f', 1));
-  click("stepper-use-points");
-  EXPECT_TRUE(stepper().start().byHand());
-  click("stepper-remove-point");
-  EXPECT_EQ(stepper().start().pointPairs().size(), 2U);
-}
-
-TEST_F(StepperPanelsTest, TheViewShowsBothScansInTheirColours) {
-  if (!canDraw()) GTEST_SKIP() << "no OpenGL";
-  ASSERT_TRUE(loaded());
-  EXPECT_TRUE(text("stepper-view-title").contains("orange"));
-  const QImage picture = view->picture();
-  const ui::RegistrationColours colours = ui::RegistrationColours::of(theme.isDark());
-  const auto shows = [&](Rgb colour) {
-    for (int y = 0; y < picture.height(); ++y)
-      for (int x = 0; x < picture.width(); ++x)
-        if (picture.pixelColor(x, y) == QColor(colour.r, colour.g, colour.b)) return true;
-    return false;
-  };
-  EXPECT_TRUE(shows(colours.fixed));
-  EXPECT_TRUE(shows(colours.moving));
-}
-
-TEST_F(StepperPanelsTest, EveryControlHasANameATipAndAPlaceInTheFocusOrder) {
-  for (const char* panel : {"stepper", "stepper-view", "stepper-plots"})
-    for (QWidget* control : window->docks().panel(panel)->findChildren<QWidget*>()) {
-      const bool counts = qobject_cast<QAbstractButton*>(control) || qobject_cast<QComboBox*>(control) ||
-                          qobject_cast<QSlider*>(control);
-      if (!counts || !control->objectName().startsWith("stepper-")) continue;
-      EXPECT_FALSE(control->accessibleName().isEmpty() && control->property("text").toString().isEmpty())
-          << control->objectName().toStdString();
-      EXPECT_FALSE(control->toolTip().isEmpty()) << control->objectName().toStdString();
-      EXPECT_NE(control->focusPolicy(), Qt::NoFocus) << control->objectName().toStdString();
-    }
-}
-
-TEST_F(StepperPanelsTest, ThePanelsFitBesideEachOtherOnASmallScreen) {
-  runByMouse();
-  EXPECT_LE(window->docks().panel("stepper")->minimumSizeHint().width(), 300);
-  EXPECT_LE(view->minimumSizeHint().width(), 640);
-  EXPECT_LE(window->docks().panel("stepper-plots")->minimumSizeHint().width(), 560);
-  EXPECT_LE(window->width(), 1366);
-}
-
-TEST_F(StepperPanelsTest, ThePanelLooksAsItDid) {
-  preferences.setTheme(ui::ThemeChoice::Dark);
-  for (int k = 0; k < 4; ++k) stepByMouse();
-  ui::StepperPanel panel({workspace(), window->actions(), theme});
-  panel.setAutoFillBackground(true);
-  panel.resize(360, 720);
-  panel.show();
-  settle();
-  EXPECT_TRUE(looksLike(panel.grab().toImage(), "stepper-panel"));
 }
 
 }  // namespace

@@ -69,8 +69,28 @@ TEST_F(FormsTest, SimulatesRegistersAndRelaxes) {
   run(form("register"));
   ASSERT_TRUE(snapshot().hasStage(Stage::Pairwise));
   EXPECT_FALSE(snapshot().hasStage(Stage::Relaxed));
-  run(form("relax"));
+  // A relaxation moves every scan, so that it ends as a proposal from the menu as well.
+  OperationDialog* relax = form("relax");
+  EXPECT_TRUE(find<QLabel>("proposal", relax)->text().contains("nothing is stored"));
+  click("run", relax);
+  ASSERT_TRUE(waitUntil([&] { return workspace().relaxation().isProposal(); }));
+  settle();
+  EXPECT_FALSE(snapshot().hasStage(Stage::Relaxed));
+  EXPECT_TRUE(window->isPanelShown("relax"));
+  click("relax-discard");
+  EXPECT_FALSE(snapshot().hasStage(Stage::Relaxed));
+  // Several wait their turn, and each is decided by itself, here by the bar at the bottom.
+  click("run", form("relax"));
+  click("run", form("relax"));
+  EXPECT_EQ(workspace().jobs().queued(), 1);
+  ASSERT_TRUE(waitUntil([&] { return workspace().relaxation().isProposal(); }));
+  settle();
+  click("job-accept");
   EXPECT_TRUE(snapshot().hasStage(Stage::Relaxed));
+  ASSERT_TRUE(waitUntil([&] { return workspace().relaxation().isProposal(); }));
+  settle();
+  click("job-cancel");
+  EXPECT_FALSE(workspace().jobs().busy());
   EXPECT_EQ(workspace().display().stage(), Stage::Relaxed) << "what came last is shown";
   undo();
   EXPECT_FALSE(snapshot().hasStage(Stage::Relaxed));

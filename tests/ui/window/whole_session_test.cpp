@@ -11,6 +11,7 @@
 #include "tests/ui/support/window_fixture.h"
 #include "ui/models/parameter_model.h"
 #include "ui/models/relaxation_model.h"
+#include "ui/models/stepper_model.h"
 #include "ui/panels/depth_image_panel.h"
 #include "ui/panels/links_panel.h"
 #include "ui/panels/table_view.h"
@@ -83,6 +84,41 @@ TEST_F(WholeSessionTest, MakesTheSameProjectAsTheCommandLine) {
   EXPECT_EQ(depth->view(1).image()->quantity, DepthQuantity::Changed);
   const std::string looked = timeless(snapshot());
 
+  // A pair by steps: forward, back, forward, to the end; accepted, undone and done again.
+  press(QKeySequence("Ctrl+Shift+I"));
+  ASSERT_EQ(window->perspective(), Perspective::Register);
+  StepperModel& stepper = workspace().stepper();
+  stepper.setPace(0);
+  auto* moving = find<QComboBox>("stepper-moving");
+  moving->setFocus();
+  QTest::keyClick(moving, Qt::Key_Down);
+  ASSERT_EQ(stepper.fixed(), id(0));
+  ASSERT_EQ(stepper.moving(), id(2)) << "two stops that the demo has no link between";
+  for (int k = 1; k <= 3; ++k) {
+    press(QKeySequence(Qt::Key_F8));
+    ASSERT_TRUE(waitUntil([&] { return stepper.position() == k; }));
+  }
+  const QString third = find<QLabel>("stepper-rms")->text();
+  press(QKeySequence("Shift+F8"));
+  EXPECT_EQ(stepper.position(), 2);
+  EXPECT_NE(find<QLabel>("stepper-rms")->text(), third);
+  click("stepper-step");
+  EXPECT_EQ(find<QLabel>("stepper-rms")->text(), third) << "as it was";
+  click("stepper-back");
+  click("stepper-back");
+  press(QKeySequence(Qt::Key_F9));
+  ASSERT_TRUE(waitUntil([&] { return stepper.isEnded(); }));
+  settle();
+  EXPECT_TRUE(find<QLabel>("stepper-state")->text().contains("converged"));
+  EXPECT_EQ(timeless(snapshot()), looked) << "nothing is stored before Accept";
+  click("stepper-accept");
+  ASSERT_EQ(snapshot().links().size(), 14U);
+  const std::string stepped = timeless(snapshot());
+  press(QKeySequence("Ctrl+Z"));
+  EXPECT_EQ(timeless(snapshot()), looked);
+  press(QKeySequence("Ctrl+Shift+Z"));
+  EXPECT_EQ(timeless(snapshot()), stepped);
+
   // Relaxed, paused on the way, looked at before and after, discarded once.
   ASSERT_TRUE(trigger("perspective.relax"));
   // Scan by scan, which takes its time; then all at once, as the command does.
@@ -92,18 +128,20 @@ TEST_F(WholeSessionTest, MakesTheSameProjectAsTheCommandLine) {
   ASSERT_TRUE(waitUntil([&] { return workspace().relaxation().isHolding(); }))
       << find<QLabel>("relax-state")->text().toStdString() << "; "
       << find<QLabel>("relax-doing")->text().toStdString();
-  EXPECT_EQ(timeless(snapshot()), looked);
+  EXPECT_EQ(timeless(snapshot()), stepped);
   click("relax-pause");
   EXPECT_FALSE(workspace().relaxation().isPaused());
   click("relax-cancel");
   ASSERT_TRUE(waitForJobs());
-  EXPECT_EQ(timeless(snapshot()), looked) << "cancelled without a trace";
+  EXPECT_EQ(timeless(snapshot()), stepped) << "cancelled without a trace";
   find<QComboBox>("relax-preset")->setCurrentText("default");
   click("relax-run");
   ASSERT_TRUE(proposed());
   click("relax-before");
+  click("relax-wipe");
+  click("relax-blink");
   click("relax-discard");
-  EXPECT_EQ(timeless(snapshot()), looked) << "discarded without a trace";
+  EXPECT_EQ(timeless(snapshot()), stepped) << "discarded without a trace";
   click("relax-run");
   ASSERT_TRUE(proposed());
   click("relax-accept");
@@ -112,7 +150,7 @@ TEST_F(WholeSessionTest, MakesTheSameProjectAsTheCommandLine) {
 
   // Undo and redo by keyboard, to the last bit.
   shortcut("Ctrl+Z");
-  EXPECT_EQ(timeless(snapshot()), looked);
+  EXPECT_EQ(timeless(snapshot()), stepped);
   shortcut("Ctrl+Shift+Z");
   EXPECT_EQ(timeless(snapshot()), relaxed);
 
@@ -145,6 +183,7 @@ TEST_F(WholeSessionTest, MakesTheSameProjectAsTheCommandLine) {
   run({"survey", "cli.tiltmap", "--site", "Tiltmap demo"});
   run({"simulate", "cli.tiltmap", "--experiment", "exp2fixed", "--seed", "1"});
   run({"register", "cli.tiltmap"});
+  run({"register", "cli.tiltmap", "--pairs", "0:2"});
   run({"relax", "cli.tiltmap"});
   run({"export", "cli.tiltmap", "cli.ply"});
   const auto cli = must(Project::open(folder / "cli.tiltmap", Access::ReadOnly));

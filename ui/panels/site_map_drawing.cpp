@@ -1,4 +1,4 @@
-// What the site map draws.
+// The plan of the site as it is painted: picture, grid, links, stops, legend.
 #include <QPainter>
 #include <algorithm>
 #include <cmath>
@@ -157,21 +157,38 @@ void SiteMapView::drawStops(QPainter& painter) const {
   drawNumbers(painter);
 }
 
-// Of numbers that would lie on one another the chosen stop's stays, else the first.
+// Beside each stop where there is room; of numbers that would lie on one another the first stays, and the
+// others are told by a tooltip.
 void SiteMapView::drawNumbers(QPainter& painter) const {
+  const ThemeColours& c = context_.theme.colours();
   const QColor text = palette().color(QPalette::Text), ground = palette().color(QPalette::Base);
+  std::vector<QRectF> taken;
+  for (const MapStop& stop : model_.stops()) {
+    const QPointF at = seen_.pixelOf(stop.place_m);
+    taken.emplace_back(at.x() - kStop_px, at.y() - kStop_px, 2 * kStop_px, 2 * kStop_px);
+  }
+  // Those that were chosen first.
   std::vector<const MapStop*> order;
   for (const MapStop& stop : model_.stops()) order.push_back(&stop);
-  std::ranges::stable_partition(order, [](const MapStop* stop) { return stop->selected; });
-  std::vector<QRectF> taken;
+  std::ranges::stable_sort(order, {}, [](const MapStop* stop) { return !stop->selected; });
   for (const MapStop* stop : order) {
-    const QPointF at = seen_.pixelOf(stop->place_m) + QPointF(kStop_px + 4, -kStop_px - 10);
+    const QPointF at = seen_.pixelOf(stop->place_m);
     const QString number = QString::number(stop->index);
-    QRectF box = painter.fontMetrics().boundingRect(number);
-    box.moveTopLeft(at);
-    if (std::ranges::any_of(taken, [&](const QRectF& other) { return other.intersects(box); })) continue;
-    taken.push_back(box);
-    drawLabel(painter, at, number, stop->visible ? text : context_.theme.colours().muted, ground);
+    const QRectF box = painter.fontMetrics().boundingRect(number);
+    const double away = kStop_px + 4, w = box.width(), h = box.height();
+    const QPointF corners[] = {{away, -kStop_px - 10},
+                               {away, kStop_px - h / 2 + 3},
+                               {-away - w, -kStop_px - 10},
+                               {-away - w, kStop_px - h / 2 + 3},
+                               {-w / 2, away},
+                               {-w / 2, -away - h - 12}};
+    for (const QPointF& corner : corners) {
+      const QRectF place(at + corner, box.size());
+      if (std::ranges::any_of(taken, [&](const QRectF& other) { return other.intersects(place); })) continue;
+      taken.push_back(place);
+      drawLabel(painter, place.topLeft(), number, stop->visible ? text : c.muted, ground);
+      break;
+    }
   }
 }
 

@@ -1,0 +1,80 @@
+// How the panels of the stepper look, and that everything in them is named and fits.
+#include <QComboBox>
+#include <QPainter>
+#include <QPushButton>
+#include <QSlider>
+#include <QTabWidget>
+
+#include <gtest/gtest.h>
+
+#include "tests/ui/support/picture_baseline.h"
+#include "tests/ui/support/stepper_window.h"
+
+namespace tiltmap::test {
+namespace {
+
+using StepperLookTest = StepperWindowTest;
+
+TEST_F(StepperLookTest, EveryControlHasANameATipAndAPlaceInTheFocusOrder) {
+  for (const char* panel : {"stepper", "stepper-view", "stepper-plots"})
+    for (QWidget* control : window->docks().panel(panel)->findChildren<QWidget*>()) {
+      const bool counts = qobject_cast<QAbstractButton*>(control) || qobject_cast<QComboBox*>(control) ||
+                          qobject_cast<QSlider*>(control);
+      if (!counts || !control->objectName().startsWith("stepper-")) continue;
+      EXPECT_FALSE(control->accessibleName().isEmpty() && control->property("text").toString().isEmpty())
+          << control->objectName().toStdString();
+      EXPECT_FALSE(control->toolTip().isEmpty()) << control->objectName().toStdString();
+      EXPECT_NE(control->focusPolicy(), Qt::NoFocus) << control->objectName().toStdString();
+    }
+}
+
+TEST_F(StepperLookTest, ThePanelsFitBesideEachOtherOnASmallScreen) {
+  runByMouse();
+  EXPECT_LE(window->docks().panel("stepper")->minimumSizeHint().width(), 300);
+  EXPECT_LE(view->minimumSizeHint().width(), 640);
+  EXPECT_LE(window->docks().panel("stepper-plots")->minimumSizeHint().width(), 560);
+  EXPECT_LE(window->width(), 1366);
+}
+
+// The panel with its 3D view, which Qt does not draw with the rest everywhere.
+QImage withView(QWidget& panel, ui::StepperViewPanel& view) {
+  QImage picture = panel.grab().toImage();
+  QPainter painter(&picture);
+  painter.drawImage(QRect(view.view()->mapTo(&panel, QPoint()), view.view()->size()), view.picture());
+  painter.end();
+  return picture;
+}
+
+TEST_F(StepperLookTest, TheViewLooksAsItDid) {
+  if (!canDraw()) GTEST_SKIP() << "no OpenGL";
+  preferences.setTheme(ui::ThemeChoice::Dark);
+  ASSERT_TRUE(loaded());
+  for (int k = 0; k < 2; ++k) stepByMouse();
+  view->resize(640, 420);
+  EXPECT_TRUE(looksLike(withView(*view, *view).scaled(640, 416), "stepper-view"));
+}
+
+TEST_F(StepperLookTest, ThePlotsLookAsTheyDid) {
+  preferences.setTheme(ui::ThemeChoice::Dark);
+  runByMouse();
+  QWidget* panel = window->docks().panel("stepper-plots");
+  auto* tabs = find<QTabWidget>("stepper-tabs");
+  const char* const names[] = {"stepper-plots-convergence", "stepper-plots-pairs", "stepper-plots-residuals",
+                               "stepper-plots-iterations"};
+  for (int tab = 0; tab < 4; ++tab) {
+    tabs->setCurrentIndex(tab);
+    settle();
+    EXPECT_TRUE(looksLike(panel->grab().toImage().scaled(560, 240), names[tab]));
+  }
+}
+
+TEST_F(StepperLookTest, ThePanelLooksAsItDid) {
+  preferences.setTheme(ui::ThemeChoice::Dark);
+  for (int k = 0; k < 4; ++k) stepByMouse();
+  QWidget* panel = window->docks().panel("stepper");
+  const QImage picture = panel->grab().toImage().scaled(320, 480);
+  EXPECT_TRUE(looksLike(picture, "stepper-panel"));
+}
+
+}  // namespace
+}  // namespace tiltmap::test

@@ -1,0 +1,36 @@
+// What the iteration shown found and did: residual, pairs, overlap, and its motion as matrix and vector.
+#pragma once
+
+#include <QWidget>
+#include <map>
+
+#include "ui/panels/panel.h"
+
+class QGridLayout;
+class QLabel;
+
+namespace tiltmap::ui {
+
+class StepperModel;
+
+class StepperFigures : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit StepperFigures(const PanelContext& context, QWidget* parent = nullptr);
+
+ private:
+  QWidget* buildNumbers();
+  QWidget* buildMotion();
+  void addNumber(QGridLayout* grid, const QString& name, const QString& title, const QString& tip);
+  void showNumber(const QString& name, const QString& text);
+  void refresh();
+
+  PanelContext context_;
+  StepperModel& model_;
+  std::map<QString, QLabel*> numbers_;
+  QLabel* motion_[3][4];
+  QLabel* motion_text_;
+};
+
+}  // namespace tiltmap::ui
