@@ -272,8 +272,13 @@ void SiteMapView::drawLegend(QPainter& painter) const {
   int widest = 0;
   for (const Entry& entry : entries)
     widest = std::max(widest, painter.fontMetrics().horizontalAdvance(entry.text));
-  const QRectF box(width() - widest - 52.0, 8.0, widest + 44.0,
-                   line * static_cast<double>(entries.size()) + 8.0);
+  QRectF box(width() - widest - 52.0, 8.0, widest + 44.0, line * static_cast<double>(entries.size()) + 8.0);
+  // At the upper left where it would lie over fewer stops there.
+  const auto hides = [&](const QRectF& place) {
+    return std::ranges::count_if(
+        model_.stops(), [&](const MapStop& stop) { return place.contains(seen_.pixelOf(stop.place_m)); });
+  };
+  if (const QRectF left = box.translated(8.0 - box.left(), 0.0); hides(left) < hides(box)) box = left;
   QColor ground = palette().color(QPalette::Window);
   ground.setAlphaF(0.85);
   painter.setPen(QPen(c.line, 1.0));

@@ -13,6 +13,7 @@
 #include "tests/support/program.h"
 #include "tests/ui/support/window_fixture.h"
 #include "ui/models/project_tree_model.h"
+#include "ui/models/relaxation_model.h"
 #include "ui/panels/project_tree_panel.h"
 #include "ui/window/message_bar.h"
 #include "ui/window/operation_dialog.h"
