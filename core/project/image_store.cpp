@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include "core/scan/beam_tilts.h"
+
 namespace tiltmap {
 
 // Blobs hold numbers as this machine does.
@@ -21,6 +23,11 @@ StoreFailure damaged(const Database& database, std::int64_t matrix, const std::s
 template <class T>
 void copyCells(Bytes from, std::vector<T>& to, std::size_t first, std::size_t count) {
   std::memcpy(static_cast<void*>(to.data() + first), from.data(), count * sizeof(T));
+}
+
+// NULL for lines that were measured standing still.
+std::optional<double> turnTilt(double way_rad) {
+  return way_rad == 0.0 ? std::nullopt : std::optional(way_rad);
 }
 
 std::size_t memoryOf(const RangeImage& image) {
@@ -128,10 +135,11 @@ RangeImagePtr ImageStore::load(std::int64_t matrix, int lines, const ScannerGeom
 
   // By id: the first `lines` lines that were stored, so that a snapshot of a capture does not grow.
   Statement query = database.prepare(
-      "SELECT row, tilt_rad, time_s, range_m, code, intensity, direction FROM scan_line WHERE matrix_id = ?1 "
-      "AND id IN "
+      "SELECT row, tilt_rad, time_s, range_m, code, intensity, direction, turn_tilt_rad FROM scan_line WHERE "
+      "matrix_id = ?1 AND id IN "
       "(SELECT id FROM scan_line WHERE matrix_id = ?1 ORDER BY id LIMIT ?2)");
   query.bind(matrix, lines);
+  std::vector<double> turn_tilts(static_cast<std::size_t>(data.rows), 0.0);
   int found = 0;
   while (query.step()) {
     const int row = query.number(0);
@@ -143,6 +151,7 @@ RangeImagePtr ImageStore::load(std::int64_t matrix, int lines, const ScannerGeom
         (has_direction && query.blob(6).size() != columns * sizeof(Eigen::Vector3f)))
       throw damaged(database, matrix, "line " + std::to_string(row) + " has the wrong length");
     data.line_tilt_rad[static_cast<std::size_t>(row)] = query.real(1);
+    if (!query.isNull(7)) turn_tilts[static_cast<std::size_t>(row)] = query.real(7);
     if (has_time) data.line_time_s[static_cast<std::size_t>(row)] = query.real(2);
     copyCells(query.blob(3), data.range_m, first, columns);
     copyCells(query.blob(4), data.code, first, columns);
@@ -152,6 +161,7 @@ RangeImagePtr ImageStore::load(std::int64_t matrix, int lines, const ScannerGeom
   }
   if (found != lines)
     throw damaged(database, matrix, std::to_string(lines - found) + " of its lines are missing");
+  setTurnTilts(data, turn_tilts);
   auto image = RangeImage::make(std::move(data));
   if (!image) throw damaged(database, matrix, image.error().what);
   return *image;
@@ -173,8 +183,8 @@ std::int64_t writeMatrix(const Database& database, const RangeImage* image, cons
   const std::int64_t matrix = insert(data.rows, data.columns, image->hasIntensity(), !image->isRegular(),
                                      image->hasTimes(), data.rows, image->validCells());
   Statement line = database.prepare(
-      "INSERT INTO scan_line(matrix_id, row, tilt_rad, time_s, range_m, code, intensity, direction) "
-      "VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+      "INSERT INTO scan_line(matrix_id, row, tilt_rad, time_s, range_m, code, intensity, direction, "
+      "turn_tilt_rad) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
   const auto columns = static_cast<std::size_t>(data.columns);
   for (int row = 0; row < data.rows; ++row) {
     const std::size_t first = static_cast<std::size_t>(row) * columns;
@@ -186,7 +196,7 @@ std::int64_t writeMatrix(const Database& database, const RangeImage* image, cons
     line.run(matrix, row, image->lineTilt(row),
              image->hasTimes() ? image->lineTime(row) : std::numeric_limits<double>::quiet_NaN(),
              bytesOf(data.range_m.data() + first, columns), bytesOf(data.code.data() + first, columns),
-             intensity, direction);
+             intensity, direction, turnTilt(lineTurnTilt(*image, row)));
   }
   return matrix;
 }

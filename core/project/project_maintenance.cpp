@@ -3,6 +3,7 @@
 
 #include <sqlite3.h>
 
+#include "core/project/moving_line.h"
 #include "core/project/project_file.h"
 #include "core/project/project_state.h"
 #include "core/project/schema.h"
@@ -18,12 +19,13 @@ std::vector<float> checkedRanges(const ScanLine& line, std::size_t columns, cons
   const auto refuse = [&](const std::string& what) {
     throw StoreFailure(what, where, "check the scanner's driver");
   };
-  if (line.range_m.size() != columns || line.code.size() != columns ||
+  if (line.range_m.size() != columns + (turnTiltOf(line) != 0.0 ? 1 : 0) || line.code.size() != columns ||
       (!line.intensity.empty() && line.intensity.size() != columns))
     refuse("the line is not " + std::to_string(columns) + " cells wide");
-  if (!std::isfinite(line.tilt_rad) || !std::isfinite(line.time_s))
+  if (!std::isfinite(line.tilt_rad) || !std::isfinite(line.time_s) || !std::isfinite(turnTiltOf(line)))
     refuse("the line's tilt or time is not finite");
-  std::vector<float> ranges = line.range_m;
+  std::vector<float> ranges(line.range_m.begin(),
+                            line.range_m.begin() + static_cast<std::ptrdiff_t>(columns));
   for (std::size_t i = 0; i < columns; ++i) {
     if (!cell_code::hasPoint(line.code[i])) {
       ranges[i] = 0.0F;
@@ -74,11 +76,13 @@ void storeLine(const Database& database, std::int64_t matrix, int row, const Sca
   if (intensity) intensities = bytesOf(line.intensity.data(), head.columns);
   std::size_t valid = 0;
   for (const CellCode code : line.code) valid += cell_code::hasPoint(code) ? 1 : 0;
+  const double turn_tilt = turnTiltOf(line);
   database.run(
-      "INSERT INTO scan_line(matrix_id, row, tilt_rad, time_s, range_m, code, intensity) VALUES (?, ?, ?, ?, "
-      "?, ?, ?)",
+      "INSERT INTO scan_line(matrix_id, row, tilt_rad, time_s, range_m, code, intensity, turn_tilt_rad) "
+      "VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
       matrix, row, line.tilt_rad, line.time_s, bytesOf(ranges.data(), head.columns),
-      bytesOf(line.code.data(), head.columns), intensities);
+      bytesOf(line.code.data(), head.columns), intensities,
+      turn_tilt == 0.0 ? std::nullopt : std::optional(turn_tilt));
   database.run(
       "UPDATE matrix SET lines = lines + 1, valid_cells = valid_cells + ?, has_intensity = ? WHERE id = ?",
       valid, intensity, matrix);

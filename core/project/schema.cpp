@@ -147,7 +147,10 @@ CREATE INDEX photograph_by_attachment ON photograph(attachment_id);
 // 0xRRGGBB that a person chose for a scan; NULL: by its place in the survey.
 constexpr Migration kScanColour = "ALTER TABLE scan ADD COLUMN colour INTEGER";
 
-constexpr std::array kMigrations = {kVersion1, kScanColour};
+// What the tilt moved during a turn of the mirror while the line was measured; NULL: it stood.
+constexpr Migration kTurnTilt = "ALTER TABLE scan_line ADD COLUMN turn_tilt_rad REAL";
+
+constexpr std::array kMigrations = {kVersion1, kScanColour, kTurnTilt};
 constexpr std::array kRecorded = {"scan", "pose", "photograph", "link", "survey", "job"};
 
 }  // namespace

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+
+#include "core/scan/beam_tilts.h"
 
 namespace tiltmap {
 
@@ -111,7 +114,9 @@ class RegularTiles {
         across_(columns_ * static_cast<std::size_t>(tile_rows)),
         ahead_(across_.size()),
         used_(across_.size()),
-        two_cos_azimuth_(static_cast<float>(2.0 * std::cos(geometry.azimuth_step_rad))) {
+        // Of a moving line the neighbours are those of the same turn: beams of another one look elsewhere.
+        apart_(tiltMoved(image) ? mirrorTurns(geometry) : 1),
+        two_cos_azimuth_(static_cast<float>(2.0 * std::cos(apart_ * geometry.azimuth_step_rad))) {
     for (std::size_t k = 0; k < columns_; ++k) {
       const double a = geometry.azimuthOfColumn(static_cast<int>(k));
       cosine_[k] = std::cos(a), sine_[k] = std::sin(a);
@@ -119,6 +124,7 @@ class RegularTiles {
     const int rows = image.rows();
     const double step = rows > 1 ? (image.lineTilt(rows - 1) - image.lineTilt(0)) / (rows - 1) : 0.0;
     two_cos_tilt_ = static_cast<float>(2.0 * std::cos(step));
+    if (tiltMoved(image)) tilts_.emplace(image, geometry);
   }
 
   // Row after row, from the first.
@@ -136,6 +142,10 @@ class RegularTiles {
       ahead[k] = range * sine_[k];
     }
     const LinePlane& plane = planes_.emplace_back(geometry_, image_.lineTilt(row));
+    if (tilts_) {
+      addMovingLine(row, begin, tiles);
+      return;
+    }
     for (std::size_t first = 0; first < columns_; first += tile_columns_, ++tiles) {
       const std::size_t last = std::min(columns_, first + tile_columns_);
       LineSums sums;
@@ -160,11 +170,33 @@ class RegularTiles {
       const std::size_t last = std::min(columns_, first + tile_columns_);
       for (std::size_t line = 0; line < planes_.size(); ++line)
         for (std::size_t k = line * columns_ + first; k < line * columns_ + last; ++k)
-          if (used_[k] > 0.0F) samples.add(planes_[line].point(across_[k], ahead_[k]), 1.0);
+          if (used_[k] > 0.0F) samples.add(pointOf(line, k), 1.0);
     }
   }
 
  private:
+  // Of the cell at `k` of the lines of these tiles.
+  Eigen::Vector3d pointOf(std::size_t line, std::size_t k) const {
+    return tilts_ ? points_[k] : planes_[line].point(across_[k], ahead_[k]);
+  }
+
+  void addMovingLine(int row, std::size_t begin, Moments* tiles) {
+    tilts_->setRow(row);
+    points_.resize(across_.size());
+    const Eigen::Vector3d across = geometry_.mounting * Eigen::Vector3d::UnitX();
+    const Eigen::Vector3d ahead = geometry_.mounting * Eigen::Vector3d::UnitY();
+    for (std::size_t k = 0; k < columns_; ++k) {
+      const std::size_t cell = begin + k;
+      if (!(used_[cell] > 0.0F)) continue;
+      const Eigen::Vector3d v = geometry_.lever_arm_m + across_[cell] * across + ahead_[cell] * ahead;
+      const double c = tilts_->cosine(k), s = tilts_->sine(k);
+      const Eigen::Vector3d p(v.x(), c * v.y() - s * v.z(), s * v.y() + c * v.z());
+      points_[cell] = p;
+      tiles[k / tile_columns_] += {1.0,           p.x(),         p.y(),         p.z(),         p.x() * p.x(),
+                                   p.x() * p.y(), p.x() * p.z(), p.y() * p.y(), p.y() * p.z(), p.z() * p.z()};
+    }
+  }
+
   // 1 where a cell takes part, 0 where not.
   void chooseCells(int row, float* used) {
     const float* here = inverse_.row(row);
@@ -176,8 +208,14 @@ class RegularTiles {
         used[k] = q > 0.0F ? 1.0F : 0.0F;
         continue;
       }
+      const auto apart = static_cast<std::size_t>(apart_);
+      if (apart > 1 && (k < apart || k + apart >= columns_)) {
+        used[k] = 0.0F;
+        continue;
+      }
       const float* at = here + k;
-      const float bend_along = std::abs(at[-1] + at[1] - two_cos_azimuth_ * q);
+      const float bend_along =
+          std::abs(at[-apart_] + at[apart_] - two_cos_azimuth_ * q) / static_cast<float>(apart_ * apart_);
       const float bend_across = std::abs(before[k] + after[k] - two_cos_tilt_ * q);
       // |bend| r^2 below the bound; a cell without a point fails on 0 < 0.
       used[k] = std::max(bend_along, bend_across) < kBend_m * q * q ? 1.0F : 0.0F;
@@ -193,7 +231,10 @@ class RegularTiles {
   std::size_t columns_;
   std::vector<double> cosine_, sine_, across_, ahead_;
   std::vector<float> used_;
-  std::vector<LinePlane> planes_;  // of the lines since the tiles began
+  std::vector<LinePlane> planes_;        // of the lines since the tiles began
+  int apart_;                            // columns between beams of one turn of the mirror
+  std::optional<BeamTilts> tilts_;       // where the tilt moved on
+  std::vector<Eigen::Vector3d> points_;  // then: of the lines since the tiles began
   float two_cos_azimuth_, two_cos_tilt_ = 2.0F;
 };
 

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
+
+#include "core/scan/beam_tilts.h"
 
 namespace tiltmap {
 
@@ -23,7 +26,9 @@ Result<RangeImagePtr> RangeImage::make(RangeImageData data) {
     return refuse("intensities do not fill the matrix");
   if (!data.direction.empty() && data.direction.size() != cells)
     return refuse("directions do not fill the matrix");
-  if (data.line_tilt_rad.size() != rows) return refuse("there is not one tilt angle for every line");
+  // As many again where the tilt moved on during the lines (beam_tilts.h).
+  if (data.line_tilt_rad.size() != rows && data.line_tilt_rad.size() != 2 * rows)
+    return refuse("there is not one tilt angle for every line");
   if (!data.line_time_s.empty() && data.line_time_s.size() != rows)
     return refuse("there is not one time for every line");
   for (const double tilt : data.line_tilt_rad)
@@ -58,7 +63,7 @@ Eigen::Vector3d cellPoint(const RangeImage& image, const ScannerGeometry& geomet
   const std::size_t cell = image.index(row, column);
   if (!image.isRegular())
     return image.directions()[cell].cast<double>() * static_cast<double>(image.range(cell));
-  return geometry.point(image.lineTilt(row), geometry.azimuthOfColumn(column),
+  return geometry.point(beamTilt(image, geometry, row, column), geometry.azimuthOfColumn(column),
                         static_cast<double>(image.range(cell)));
 }
 
@@ -72,9 +77,13 @@ std::vector<Eigen::Vector3d> cellPoints(const RangeImage& image, const ScannerGe
       beams.push_back(geometry.mounting * Eigen::Vector3d(std::cos(a), std::sin(a), 0.0));
     }
   }
+  const bool moved = tiltMoved(image) && image.isRegular();
+  std::optional<BeamTilts> tilts;
+  if (moved) tilts.emplace(image, geometry);
   for (int row = 0; row < image.rows(); ++row) {
     const double e = image.lineTilt(row) + geometry.tilt_zero_rad;
-    const double c = std::cos(e), s = std::sin(e);
+    double c = std::cos(e), s = std::sin(e);
+    if (moved) tilts->setRow(row);
     for (std::size_t column = 0; column < columns; ++column) {
       const std::size_t cell = static_cast<std::size_t>(row) * columns + column;
       if (!image.hasPoint(cell)) continue;
@@ -83,6 +92,7 @@ std::vector<Eigen::Vector3d> cellPoints(const RangeImage& image, const ScannerGe
         points[cell] = image.directions()[cell].cast<double>() * range;
         continue;
       }
+      if (moved) c = tilts->cosine(column), s = tilts->sine(column);
       const Eigen::Vector3d v = geometry.lever_arm_m + (range + geometry.range_offset_m) * beams[column];
       points[cell] = {v.x(), c * v.y() - s * v.z(), s * v.y() + c * v.z()};
     }

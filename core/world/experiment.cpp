@@ -8,6 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "core/scan/beam_tilts.h"
 #include "core/world/drive.h"
 
 namespace tiltmap {
@@ -179,6 +180,11 @@ Result<SimulatedStop> Experiment::simulateIn(const Site& site, int stop, int thr
     if (report) job.tell(static_cast<double>(++done) / data.rows, "scanning stop " + std::to_string(stop));
   });
   if (job.stopRequested()) return fail(kCancelled, "simulation", "start it again");
+  if (settings.continuous_tilt) {
+    const double speed = settings.geometry.tilt_step_rad / settings.line_period_s;
+    setTurnTilts(data,
+                 std::vector<double>(static_cast<std::size_t>(data.rows), speed * settings.beam.turn_s));
+  }
   auto image = RangeImage::make(std::move(data));
   if (!image) return fail(image.error());
   SimulatedStop result;

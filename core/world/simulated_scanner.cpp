@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "core/scan/beam_tilts.h"
+
 namespace tiltmap {
 
 namespace {
@@ -146,21 +148,15 @@ Echo echoOf(const Pulse& pulse, const LmsBeam& beam, double range_offset_m, Rand
   return echo;
 }
 
-int turnsOf(const ScannerGeometry& geometry, const LmsBeam& beam) {
-  if (!beam.interlaced) return 1;
-  constexpr double kWholeDegree = kDegree;
-  return std::max(1, static_cast<int>(std::lround(kWholeDegree / std::abs(geometry.azimuth_step_rad))));
-}
-
 }  // namespace
 
 double beamDelay(const ScannerGeometry& geometry, const LmsBeam& beam, int column) {
-  const double way = std::abs(geometry.azimuth_step_rad) * column;  // the mirror's, from the first beam
-  return beam.turn_s * (column % turnsOf(geometry, beam) + way / (360.0 * kDegree));
+  const double turns = beamTurns(geometry, column);
+  return beam.turn_s * (beam.interlaced ? turns : turns - column % mirrorTurns(geometry));
 }
 
 double lineDuration(const ScannerGeometry& geometry, const LmsBeam& beam) {
-  return beam.turn_s * turnsOf(geometry, beam);
+  return beam.turn_s * (beam.interlaced ? mirrorTurns(geometry) : 1);
 }
 
 Pulse castPulse(const Site& site, const Ray& axis, const Eigen::Vector3d& across, const LmsBeam& beam) {

@@ -55,13 +55,14 @@ class Capture {
       RigSettings rig;
       rig.start_rad = s.start_rad;
       rig.step_rad = s.step_rad;
-      auto bench = EmulatedBench::make(*experiment, rig, s.speed);
+      auto bench = EmulatedBench::make(*experiment, rig, s.speed, s.baud);
       if (!bench) return fail(bench.error());
       bench_ = std::move(*bench);
       instruments = bench_->instruments();
     }
     SweepSettings settings;
     settings.patience_s = s.patience_s;
+    settings.steady = s.mode == CaptureMode::Continuous;
     sweep_ = std::make_unique<Sweep>(std::move(instruments), settings);
     return {};
   }

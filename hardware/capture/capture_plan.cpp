@@ -49,6 +49,14 @@ const ParameterTable<CaptureSettings>& captureTable() {
     t.real("speed", &S::speed, "", 0.0, 100.0,
            "Emulated instruments so many times as fast as they are; 0: as fast as the machine can, in memory",
            "ours");
+    t.integer("baud", &S::baud, "", 9600, 500000,
+              "Rate of the emulated scanner: 9600, 19200, 38400 or 500000; a real one's is in its URL",
+              "ours");
+    t.choice(
+        "mode", &S::mode, {{"stop", CaptureMode::Stop}, {"continuous", CaptureMode::Continuous}},
+        "stop: each line while the tilt stands still. continuous: the tilt moves on at one speed and every "
+        "beam gets its own angle; faster",
+        "stop: thesis 3.2; continuous: ours");
     t.integer("lines", &S::lines, "", 1, 2000, "Lines of a scan", "thesis 3.2: 101");
     t.angle("step", &S::step_rad, 0.01, 45.0, "Tilt from line to line, upwards", "thesis 3.2: 0.8 deg");
     t.angle("start", &S::start_rad, -180.0, 180.0, "Tilt of the first line, 0 level, positive up",
@@ -124,6 +132,9 @@ Result<CapturePlan> planCapture(const ProjectSnapshot& snapshot, const CaptureSe
 }
 
 Status checkCapture(const CaptureSettings& settings, const AskOperator& ask) {
+  if (settings.baud != 9600 && settings.baud != 19200 && settings.baud != 38400 && settings.baud != 500000)
+    return fail("the scanner has no rate of " + std::to_string(settings.baud) + " Bd", "capture --baud",
+                "give 9600, 19200, 38400 or 500000");
   if (auto step = parseStep(settings.odometry); !step) return fail(step.error());
   if (settings.emulate != CaptureDrive::None) {
     if (!settings.scanner.empty() || !settings.tilt.empty() || !settings.odometry.empty())
@@ -135,6 +146,9 @@ Status checkCapture(const CaptureSettings& settings, const AskOperator& ask) {
     return fail(
         std::string("no ") + (settings.scanner.empty() ? "scanner" : "tilt unit") + " is named", "capture",
         "give --scanner lms2xx:PORT --tilt mip50:PORT (`tiltmap devices` lists ports), or --emulate exp1");
+  if (settings.mode == CaptureMode::Continuous && settings.tilt.starts_with("manual"))
+    return fail("a tilt that is set by hand cannot move on steadily", "capture --mode continuous",
+                "capture line by line: --mode stop");
   if (settings.stops > 1 && !ask)
     return fail("several stops need somebody to ask for the odometry between them", "capture --stops",
                 "capture one stop at a time");

@@ -14,11 +14,15 @@ inline constexpr const char* kCaptureId = "capture";
 
 enum class CaptureDrive { None, Exp1, Exp2, Exp2Fixed, Loop, Survey };
 
+enum class CaptureMode { Stop, Continuous };
+
 struct CaptureSettings {
   std::string scanner, tilt;
   CaptureDrive emulate = CaptureDrive::None;
   int seed = 1;
   double speed = 1.0;
+  CaptureMode mode = CaptureMode::Stop;
+  int baud = 38400;
   int lines = 101;
   double step_rad = 0.8 * kDegree;
   double start_rad = -30.0 * kDegree;

@@ -81,6 +81,13 @@ Status LmsScannerUnit::prepare(const JobControl& job) {
   return {};
 }
 
+double LmsScannerUnit::turnDuration() const {
+  return kTurnS;
+}
+double LmsScannerUnit::lineDuration() const {
+  return kTurnS * scanner_.variant().turns();
+}
+
 Status LmsScannerUnit::receive() {
   std::array<Byte, 1024> buffer;
   while (true) {
@@ -107,6 +114,13 @@ LineTimes LmsScannerUnit::timesOf(std::size_t bytes_here) {
     began = std::min(began, earlier + periods * period);
   }
   return {began - scan - durationOf(settings_.latency_s), began};
+}
+
+// When the bytes that seemed to begin a telegram turn out to begin none, neither did it begin then.
+void LmsScannerUnit::forgetBeginning() {
+  const Framer::Counts& counts = framer_.counts();
+  const std::size_t dropped = counts.noise + counts.bad_checksum + counts.cut;
+  if (std::exchange(dropped_, dropped) != dropped) began_ = kNever;
 }
 
 ScannerEvent LmsScannerUnit::spoiled(const char* why) {
@@ -149,9 +163,9 @@ Result<std::optional<ScannerEvent>> LmsScannerUnit::whole(const Telegram& telegr
 // The first bytes of a telegram that looks like a scan of the size it should have.
 std::optional<ScannerEvent> LmsScannerUnit::beginning() {
   const auto start = framer_.start();
-  if (start.size() < 5) return std::nullopt;
+  // Every byte tells when it began, the first one best of all: a pause may follow it.
   const LineTimes times = timesOf(start.size());
-  if (told_ || start[4] != kScanAnswer || word(start, 2) + kOverhead != telegram_size_) return std::nullopt;
+  if (start.size() < 5 || told_ || start[4] != kScanAnswer || word(start, 2) + kOverhead != telegram_size_) return std::nullopt;
   told_ = true;
   bad_then_ = framer_.counts().bad_checksum;
   return LineBegun{times};
@@ -161,7 +175,10 @@ Result<std::optional<ScannerEvent>> LmsScannerUnit::poll() {
   if (!streaming_) return fail("the scanner is not ready", name_, "prepare it first");
   if (held_) return std::exchange(held_, std::nullopt);
   if (Status status = receive(); !status) return fail(status.error());
-  while (auto token = framer_.next()) {
+  while (true) {
+    const auto token = framer_.next();
+    forgetBeginning();
+    if (!token) break;
     const auto* telegram = std::get_if<Telegram>(&*token);
     if (!telegram) continue;
     auto event = whole(*telegram);

@@ -27,6 +27,9 @@ class LmsScannerUnit : public ScannerUnit {
   int columns() const override { return geometry_.columns; }
   double azimuthStart() const override { return geometry_.azimuth_start_rad; }
   double azimuthStep() const override { return geometry_.azimuth_step_rad; }
+  double lineDuration() const override;
+  double turnDuration() const override;
+  double linePeriod() const override { return scanner_.streamPeriod(); }
   Result<std::optional<ScannerEvent>> poll() override;
   Status release() override;
   std::vector<std::string> takeWarnings() override;
@@ -36,6 +39,7 @@ class LmsScannerUnit : public ScannerUnit {
   LineTimes timesOf(std::size_t bytes_here);
   Result<std::optional<ScannerEvent>> whole(const lms2xx::Telegram& telegram);
   std::optional<ScannerEvent> beginning();
+  void forgetBeginning();
   ScannerEvent spoiled(const char* why);
 
   Clock& clock_;
@@ -51,7 +55,7 @@ class LmsScannerUnit : public ScannerUnit {
   Instant last_byte_{};
   Instant began_ = kNever;       // by its own bytes: best guess for the telegram under way
   std::vector<Instant> recent_;  // the same of the telegrams before
-  std::size_t bad_then_ = 0;
+  std::size_t bad_then_ = 0, dropped_ = 0;
   std::optional<ScannerEvent> held_;  // follows the one that was just told
   std::vector<std::string> warnings_;
 };

@@ -31,6 +31,9 @@ class MemoryScanner : public ScannerUnit {
   int columns() const override { return columns_; }
   double azimuthStart() const override { return 0.0; }
   double azimuthStep() const override { return 3.14159265358979323846 / (columns_ - 1); }
+  double lineDuration() const override { return secondsOf(kMeasuring); }
+  double turnDuration() const override { return 0.5 * secondsOf(kMeasuring); }
+  double linePeriod() const override { return secondsOf(period_); }
   Result<std::optional<ScannerEvent>> poll() override {
     if (trouble_) return fail(*trouble_);
     if (!sending_ || silent_) return std::nullopt;

@@ -141,6 +141,12 @@ Result<TiltSettings> mip50Settings(const DeviceUrl& url) {
   const auto counts = url.number("counts", -1e9, 1e9);
   if (!counts) return fail(counts.error());
   if (*counts) settings.drive.counts_per_turn = **counts;
+  const auto velocity = url.number("velocity", 0.1, 200.0),
+             acceleration = url.number("acceleration", 0.01, 20.0);
+  if (!velocity) return fail(velocity.error());
+  if (!acceleration) return fail(acceleration.error());
+  if (*velocity) settings.drive.speed = **velocity;
+  if (*acceleration) settings.drive.acceleration = **acceleration;
   if (Status status = readLimits(url, settings.drive.minimum_rad, settings.drive.maximum_rad); !status)
     return fail(status.error());
   if (Status status = settings.drive.check(); !status)

@@ -51,6 +51,11 @@ class ScannerUnit {
   virtual int columns() const = 0;
   virtual double azimuthStart() const = 0;
   virtual double azimuthStep() const = 0;
+  // For lines taken while the tilt moves, known once prepared, seconds: the turns of the mirror that measure
+  // one, a turn, and from one line that is sent to the next. 0: its beams cannot be told apart in time.
+  virtual double lineDuration() const { return 0.0; }
+  virtual double turnDuration() const { return 0.0; }
+  virtual double linePeriod() const { return 0.0; }
   // Does what is due; the next thing that has happened, nothing while there is none. Never waits.
   virtual Result<std::optional<ScannerEvent>> poll() = 0;
   // No more lines.

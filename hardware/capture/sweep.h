@@ -1,4 +1,4 @@
-// Stop-and-scan: one stop's lines, each measured while the tilt stands still.
+// One stop's lines: each measured while the tilt stands still, or all while it moves on steadily.
 #pragma once
 
 #include <functional>
@@ -21,6 +21,9 @@ struct Instruments {
 };
 
 struct SweepSettings {
+  // The tilt moves on at one speed and every beam gets the tilt of its own instant. Lines are stored once the
+  // tilt has told that it ended when and where it should have: until then their angles are not certain.
+  bool steady = false;
   // What fails is tried again; so long after the first failure without a new line, and the sweep gives up.
   double patience_s = 60.0;
   double first_pause_s = 1.0, longest_pause_s = 10.0;  // between tries to reach an instrument
@@ -54,8 +57,9 @@ class Sweep {
   Status check(const ScannerGeometry& geometry) const;
 
   // Takes every row of the geometry that `taken` does not have, in one sweep upwards and, for rows that were
-  // spoiled, further ones. When it returns, successfully or not, every line handed to `store` has been
-  // stored or has failed to be. Cancelling stops the tilt within 200 ms.
+  // spoiled, further ones. A steady one goes back below the first row at its end. When it returns,
+  // successfully or not, every line handed to `store` has been stored or has failed to be. Cancelling stops
+  // the tilt within 200 ms.
   Result<SweepReport> run(const ScannerGeometry& geometry, std::vector<bool> taken, const Store& store,
                           const JobControl& job);
   // Puts the instruments to rest.
@@ -65,6 +69,19 @@ class Sweep {
 
  private:
   struct Run;
+  struct SteadyPass;
+  Status look(Run& run);
+  Status aimAtNext(Run& run);
+  Status happened(Run& run, const ScannerEvent& event);
+  Status spoiled(Run& run);
+  Status silent(const Run& run) const;
+  SteadyPass steadyPass(const ScannerGeometry& geometry, int first, int last) const;
+  Status checkSteady(const ScannerGeometry& geometry) const;
+  Status passSteadily(Run& run);
+  Status watch(Run& run, SteadyPass& pass, const std::function<bool()>& done);
+  Status goBelow(Run& run, SteadyPass& pass);
+  Status storeSteady(Run& run, const SteadyPass& pass);
+  void park(const ScannerGeometry& geometry);
   Status recover(const Error& why, Run& run);
   void noteWarnings(std::vector<std::string>& warnings);
 

@@ -79,6 +79,7 @@ void Mip50Emulator::boot(Instant now) {
   trip_ = kNever;
   error_ = 0;
   reader_.clear();
+  incoming_.clear();
   outgoing_.clear();
   wire_free_ = now;
   if (ascii_) answer(Mip50Banner{true}, now);
@@ -86,6 +87,7 @@ void Mip50Emulator::boot(Instant now) {
 
 void Mip50Emulator::rewire(DeviceWire& wire) {
   wire_ = &wire;
+  incoming_.clear();
   outgoing_.clear();
 }
 
@@ -290,7 +292,7 @@ void Mip50Emulator::receive(Instant now) {
   std::array<Byte, 128> buffer;
   while (true) {
     const auto count = wire_->read(buffer, now);
-    if (!count || *count == 0) return;
+    if (!count || *count == 0) break;
     // At another rate nothing arrives that means anything.
     if (!on_ || wire_->peerLine().baud != settings_.baud) continue;
     std::string bytes(reinterpret_cast<const char*>(buffer.data()), *count);
@@ -300,34 +302,41 @@ void Mip50Emulator::receive(Instant now) {
       char& byte = bytes[static_cast<std::size_t>(random_.below(bytes.size()))];
       byte = static_cast<char>(static_cast<unsigned char>(byte) ^ (1U << random_.below(7)));
     }
+    // A wire in memory takes its time by itself.
+    Instant at = incoming_.empty() ? now : std::max(now, incoming_.back().at);
     for (const char byte : bytes) {
-      if (!ascii_) {
-        typed(byte, now);
-        continue;
-      }
-      if (byte == 5) {
-        echo_ = !echo_;
-        continue;
-      }
-      std::vector<Mip50CommandReader::Item> items;
-      reader_.take({&byte, 1}, items);
-      for (const auto& item : items) {
-        if (const auto* command = std::get_if<Mip50Command>(&item))
-          obey(*command, now);
-        else
-          answer(
-              Mip50Refusal{std::get<Mip50CommandReader::Trouble>(item) == Mip50CommandReader::Trouble::TooLong
-                               ? 173
-                               : 172,
-                           settings_.axis, '?'},
-              now);
-      }
+      if (wire_->descriptor() >= 0) at += LineSettings{settings_.baud, Parity::None}.wireTime(1);
+      incoming_.push_back({at, byte});
     }
+  }
+}
+
+void Mip50Emulator::hear(char byte, Instant now) {
+  if (!ascii_) return typed(byte, now);
+  if (byte == 5) {
+    echo_ = !echo_;
+    return;
+  }
+  if (settings_.table.leave_ascii == std::string(1, byte) && reader_.between() &&
+      (!busy_ || settings_.heeds_interrupt)) {
+    ascii_ = false;
+    return answer(Mip50Banner{false}, now);
+  }
+  std::vector<Mip50CommandReader::Item> items;
+  reader_.take({&byte, 1}, items);
+  for (const auto& item : items) {
+    if (const auto* command = std::get_if<Mip50Command>(&item)) {
+      obey(*command, now);
+      continue;
+    }
+    const bool too_long = std::get<Mip50CommandReader::Trouble>(item) == Mip50CommandReader::Trouble::TooLong;
+    answer(Mip50Refusal{too_long ? 173 : 172, settings_.axis, '?'}, now);
   }
 }
 
 Instant Mip50Emulator::nextEvent() const {
   Instant next = std::min(wire_->nextArrival(), back_on_);
+  if (!incoming_.empty()) next = std::min(next, incoming_.front().at);
   if (!outgoing_.empty()) next = std::min(next, outgoing_.front().at);
   if (busy_) next = std::min(next, stuck_ ? trip_ : motor_.arrival());
   return next;
@@ -348,6 +357,11 @@ void Mip50Emulator::act(Instant now) {
     endMotion(now);
   }
   receive(now);
+  while (!incoming_.empty() && incoming_.front().at <= now) {
+    const char byte = incoming_.front().byte;
+    incoming_.pop_front();
+    if (on_) hear(byte, now);
+  }
   std::string due;
   while (!outgoing_.empty() && outgoing_.front().at <= now) {
     due += outgoing_.front().byte;

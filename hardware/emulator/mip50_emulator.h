@@ -29,7 +29,8 @@ struct Mip50EmulatorSettings {
   double home_speed = 40.0;               // counts/ms
   double lower_rad = -0.8377580409572781, upper_rad = 1.0821041362364843;  // end stops: -48 and 62 deg
   double answer_delay_s = 0.001;
-  bool text_menu = false;  // start-up mode 0 instead of 2
+  bool text_menu = false;       // start-up mode 0 instead of 2
+  bool heeds_interrupt = true;  // the ASCII mode can be left while the motor moves
   std::uint64_t seed = 1;
 
   // What TiltDrive::level_count has to be for it.
@@ -82,6 +83,7 @@ class Mip50Emulator : public EmulatedTilt {
     char byte;
   };
   void receive(Instant now);
+  void hear(char byte, Instant now);
   void obey(const Mip50Command& command, Instant now);
   void typed(char key, Instant now);
   void answer(const Mip50Answer& what, Instant now);
@@ -100,6 +102,11 @@ class Mip50Emulator : public EmulatedTilt {
   RandomStream random_;
   std::multiset<Mip50Fault> faults_;
 
+  struct Incoming {
+    Instant at;
+    char byte;
+  };
+  std::deque<Incoming> incoming_;  // a terminal hands bytes over at once; a wire takes its time for each
   std::deque<Outgoing> outgoing_;
   Instant wire_free_{};
   bool ascii_ = true, echo_ = false;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "hardware/tilt/tilt_unit.h"
 
@@ -27,6 +28,7 @@ class MemoryTiltUnit : public TiltUnit {
     if (!ready_) return fail("the tilt is not ready", name_, "prepare it first");
     if (Status status = checkAngle(angle_rad); !status) return status;
     const std::int64_t target = drive_.countsOf(angle_rad);
+    steady_.reset();
     double duration = 0.0;
     std::int64_t at = counts_;
     for (const std::int64_t station : segmentsOf(drive_, counts_, target)) {
@@ -45,6 +47,24 @@ class MemoryTiltUnit : public TiltUnit {
     if (clock_.now() < arrival_) return std::nullopt;
     return TiltReading{drive_.angleOf(counts_), counts_, arrival_ + durationOf(drive_.settle_s)};
   }
+  SteadySpeed steadySpeed(double wished_rad_s) const override {
+    const double rate = std::min(wished_rad_s, fastest());
+    return {rate, 0.001 * drive_.speed / drive_.acceleration * rate / fastest(), drive_.approach_rad};
+  }
+  Status moveSteadily(double angle_rad, double rate_rad_s) override {
+    if (trouble_) return fail(*trouble_);
+    if (Status status = checkAngle(angle_rad); !status) return status;
+    const SteadySpeed speed = steadySpeed(rate_rad_s);
+    steady_ = SteadyMotion{clock_.now(), drive_.angleOf(counts_), drive_.angleOf(drive_.countsOf(angle_rad)),
+                           speed.rate_rad_s, speed.ramp_s};
+    started_ = clock_.now();
+    before_ = counts_;
+    counts_ = drive_.countsOf(angle_rad);
+    arrival_ = steady_->end();
+    ++moves_;
+    return {};
+  }
+  std::optional<SteadyMotion> steadyMotion() const override { return steady_; }
   void stop() override { arrival_ = std::min(arrival_, clock_.now()); }
   Status release() override {
     ready_ = false;
@@ -56,11 +76,15 @@ class MemoryTiltUnit : public TiltUnit {
   int moves() const { return moves_; }
   // Where it is, halfway while it moves.
   double angle(Instant at) const {
+    if (steady_ && at < arrival_ && at >= steady_->start) return steady_->angle(at);
     const double there = drive_.angleOf(counts_);
     return at >= arrival_ ? there : 0.5 * (there + drive_.angleOf(before_));
   }
 
  private:
+  double fastest() const {
+    return 1000.0 * drive_.speed * 2.0 * 3.14159265358979323846 / std::abs(drive_.counts_per_turn);
+  }
   Clock& clock_;
   TiltDrive drive_;
   std::string name_;
@@ -68,6 +92,7 @@ class MemoryTiltUnit : public TiltUnit {
   bool ready_ = false;
   std::int64_t counts_ = 0, before_ = 0;
   Instant started_{}, arrival_{};
+  std::optional<SteadyMotion> steady_;
   int moves_ = 0;
 };
 

@@ -97,6 +97,7 @@ class Mip50CommandReader {
   explicit Mip50CommandReader(const Mip50Table& table) : table_(&table) {}
   void take(std::string_view bytes, std::vector<Item>& items);
   void clear();
+  bool between() const { return text_.empty(); }  // no command has begun
 
  private:
   const Mip50Table* table_;

@@ -70,6 +70,7 @@ Status Mip50Unit::send() {
   deadline_ = clock_.now() + channel_->line().wireTime(text.size()) + durationOf(script_.front().limit_s);
   if (Status status = channel_->write({reinterpret_cast<const Byte*>(text.data()), text.size()}); !status)
     return lost(status.error());
+  noteSent(text);
   return {};
 }
 

@@ -37,6 +37,8 @@ const std::vector<Line>& lines() {
       {"write-parameter", &T::write_parameter, "apv", "permanent; not used by the driver"},
       {"enter-ascii", &T::enter_ascii, "", "from the text menu into the ASCII mode"},
       {"leave-ascii", &T::leave_ascii, "", "back to the text menu"},
+      {"interrupt", &T::interrupt, "",
+       "stops a move: to the text menu, whose carriage return stops; not tried. Empty: no steady moves"},
       {"command-end", &T::command_end, "", "sent after each command"},
       {"done", &T::done, "", "a command is completed; after a move: the motion has ended"},
       {"value-prefix", &T::value_prefix, "", "begins an answer with a value"},
@@ -179,8 +181,7 @@ Status setLine(Mip50Table& table, std::string_view name, std::string_view value,
     const auto number = parseInteger(name.substr(prefix.size()));
     const auto text = unescaped(value);
     if (!number || *number < 0 || *number > 1'000'000 || !text)
-      return fail(printable(name) + " does not name a number", where,
-                  "write for example refusal.180");
+      return fail(printable(name) + " does not name a number", where, "write for example refusal.180");
     (*texts)[static_cast<int>(*number)] = *text;
     return {};
   }

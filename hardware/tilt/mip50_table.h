@@ -28,8 +28,11 @@ struct Mip50Table {
   std::string read_position = "P{axis}xG";
   std::string read_parameter = "q{axis}x{parameter}pG";
   std::string write_parameter = "w{axis}x{parameter}p{value}G";
-  std::string enter_ascii = "$P";    // from the text menu
-  std::string leave_ascii = "Q";     // back to it
+  std::string enter_ascii = "$P";  // from the text menu
+  std::string leave_ascii = "Q";   // back to it
+  // Stops a move that is under way: out of the ASCII mode, then the text menu's emergency stop. After what
+  // the menu says of itself; not tried. Empty: it cannot be done, and long moves are not begun.
+  std::string interrupt = "Q\r";
   std::string command_end = "\r\n";  // sent after each command; the controller goes by the G
 
   std::string done = "X0";  // the command is completed; for a move: the motion has ended

@@ -118,6 +118,8 @@ Status Mip50Unit::prepare(const JobControl& job) {
   if (Status status = home(job); !status) return status;
   irregular_ = false;
   attempts_ = 0;
+  steady_.reset();
+  reading_ = {drive_.angleOf(position_), position_, clock_.now() + durationOf(drive_.settle_s)};
   phase_ = Phase::Still;
   ready_ = true;
   return {};
@@ -153,11 +155,13 @@ Status Mip50Unit::moveTo(double angle_rad) {
   target_ = drive_.countsOf(angle_rad);
   attempts_ = 0;
   irregular_ = false;
+  steady_.reset();
   if (phase_ == Phase::Still) {
     if (Status status = plan(); !status) return status;
   } else {
     // After a stop: what was under way ends first, and then it is seen where that was.
     if (!script_.empty()) script_.erase(script_.begin() + (sent_ ? 1 : 0), script_.end());
+    if (phase_ == Phase::Gliding) script_.push_back(request(Mip50Verb::Speed, drive_.speed));
     script_.push_back(positionRequest());
     phase_ = Phase::Reading;
   }
@@ -170,6 +174,7 @@ Result<bool> Mip50Unit::arrived() {
   position_ = last_value_;
   if (phase_ == Phase::Reading) return plan().map([] { return false; });
   const double off = std::abs(drive_.angleOf(position_) - drive_.angleOf(target_));
+  if (phase_ == Phase::Gliding && !irregular_ && off <= drive_.tolerance_rad) settleSteady();
   const bool again = phase_ == Phase::Checking;
   const bool same = again && std::abs(position_ - before) <= 2;
   if (off <= drive_.tolerance_rad) {
@@ -217,13 +222,21 @@ Result<std::optional<TiltReading>> Mip50Unit::poll() {
 
 void Mip50Unit::stop() {
   if (phase_ == Phase::Lost) return;
+  if (phase_ == Phase::Gliding && sent_) {
+    // Whether it works shows when the unit is prepared again.
+    const std::string& text = table_.interrupt;
+    (void)channel_->write({reinterpret_cast<const Byte*>(text.data()), text.size()});
+    mode_known_ = false;
+    (void)lost({});
+    return;
+  }
   if (!script_.empty()) script_.erase(script_.begin() + (sent_ ? 1 : 0), script_.end());
   if (phase_ != Phase::Still) phase_ = Phase::Idle;
 }
 
 Status Mip50Unit::release() {
   if (!ready_) return {};
-  stop();
+  if (phase_ != Phase::Gliding) stop();  // a steady move is let come to its end: stopping it costs the home
   move_deadline_ = clock_.now() + durationOf(table_.move_extra_s);
   script_.push_back(request(Mip50Verb::RegulationOff));
   ready_ = false;

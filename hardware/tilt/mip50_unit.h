@@ -29,6 +29,13 @@ class Mip50Unit : public TiltUnit {
   Status moveTo(double angle_rad) override;
   Result<std::optional<TiltReading>> poll() override;
   void stop() override;
+  // In one piece, whatever TiltDrive::longest_segment_s says: stop() then needs the table's `interrupt`, and
+  // the controller has to be prepared again. The position cannot be asked for while it moves: that the move
+  // took as long as it should have, and ended where it should, makes its angles certain.
+  SteadySpeed steadySpeed(double wished_rad_s) const override;
+  Status moveSteadily(double angle_rad, double rate_rad_s) override;
+  double steadyDelay() const override;
+  std::optional<SteadyMotion> steadyMotion() const override { return steady_known_ ? steady_ : std::nullopt; }
   Status release() override;
   std::vector<std::string> takeWarnings() override;
 
@@ -42,7 +49,7 @@ class Mip50Unit : public TiltUnit {
     double limit_s = 1.0;   // until it is answered
     int value_number = -1;  // M#number must come before the acknowledge; -1: none
   };
-  enum class Phase { Idle, Moving, Reading, Checking, Still, Lost };
+  enum class Phase { Idle, Moving, Gliding, Reading, Checking, Still, Lost };
 
   Status send();
   Status take();
@@ -56,6 +63,8 @@ class Mip50Unit : public TiltUnit {
   Result<bool> probe(const JobControl& job, std::string_view bytes, bool banner);
   Status home(const JobControl& job);
   Result<bool> arrived();
+  void settleSteady();
+  void noteSent(const std::string& text);
   Status plan();
   Status lost(Error error);
   Request moveRequest(std::int64_t from, std::int64_t to) const;
@@ -91,6 +100,8 @@ class Mip50Unit : public TiltUnit {
   bool irregular_ = false;  // an answer was late, lost or garbled: look twice
   Instant ended_{};         // when the last segment was acknowledged
   TiltReading reading_;
+  std::optional<SteadyMotion> steady_;  // under way, or the last one
+  bool steady_known_ = false;           // it is over, and was as it should have been
 };
 
 }  // namespace tiltmap

@@ -8,6 +8,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/result.h"
+#include "hardware/tilt/steady_motion.h"
 #include "hardware/transport/clock.h"
 
 namespace tiltmap {
@@ -35,8 +36,22 @@ class TiltUnit {
   virtual Status moveTo(double angle_rad) = 0;
   // Does what is due. Nothing while the unit moves; the reading once it has arrived.
   virtual Result<std::optional<TiltReading>> poll() = 0;
-  // Sends nothing further: what moves stands still within 200 ms. The unit stays ready.
+  // Sends nothing further: what moves stands still within 200 ms. The unit stays ready; out of a steady move
+  // it may have to be prepared again.
   virtual void stop() = 0;
+
+  // For scanning while the tilt moves: the rate it would take for a wished one, at most that.
+  virtual SteadySpeed steadySpeed(double) const { return {}; }
+  // Begins to move from where it stands to an angle in one piece, at that rate, and returns at once. poll()
+  // tells when it has arrived, and fails where it did not move as it should have.
+  virtual Status moveSteadily(double, double) {
+    return fail("this tilt cannot move steadily", name(), "capture line by line: --mode stop");
+  }
+  // How long after moveSteadily() it begins to move, seconds.
+  virtual double steadyDelay() const { return 0.0; }
+  // How it moved the last time, once it has arrived and that is certain.
+  virtual std::optional<SteadyMotion> steadyMotion() const { return std::nullopt; }
+
   // Lets go of the motor; at the end of the work.
   virtual Status release() = 0;
   // What the operator should know, once each.

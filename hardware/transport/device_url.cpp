@@ -53,7 +53,10 @@ const std::vector<DeviceScheme>& scannerSchemes() {
 
 const std::vector<DeviceScheme>& tiltSchemes() {
   static const std::vector<DeviceScheme> known{
-      {"mip50", true, {"profile", "axis", "level", "counts", "min", "max"}, "mip50:/dev/ttyUSB1?baud=19200"},
+      {"mip50",
+       true,
+       {"profile", "axis", "level", "counts", "min", "max", "velocity", "acceleration"},
+       "mip50:/dev/ttyUSB1?baud=19200"},
       {"epos",
        true,
        {"protocol", "node", "home", "encoder", "level", "counts", "min", "max"},

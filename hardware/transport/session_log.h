@@ -41,6 +41,8 @@ struct WireSession {
   std::vector<WireRecord> records;
 };
 
+// What a session begins with, and a line of it (session_text.cpp).
+std::string sessionHead(const std::string& about, double begun_unix_s);
 std::string recordText(const WireRecord& record);
 // Fails with the number of the first line that is none; `where` names the file in it.
 Result<WireSession> parseSession(std::string_view text, const std::string& where);

@@ -10,7 +10,8 @@
 namespace tiltmap::benchmarks {
 
 // One scan of 101 lines at each rate on a virtual clock (wall: the instruments' time; CPU: drivers, emulators
-// and the project together), and one in real time over pseudo terminals. Projects are made below `scratch`.
+// and the project together), line by line and with the tilt moving on, and some in real time over pseudo
+// terminals; and where their points lie. Projects are made below `scratch`.
 void addCaptureRows(Table& table, const std::filesystem::path& scratch,
                     const std::function<void(const std::string&)>& tell);
 

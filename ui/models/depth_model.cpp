@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/text.h"
+#include "core/scan/beam_tilts.h"
 #include "core/scan/normals.h"
 #include "ui/models/project_words.h"
 #include "ui/models/strings.h"
@@ -195,7 +196,7 @@ QString DepthModel::readout(const CellPlace& cell) const {
   QString text = QString("Row %1, column %2").arg(cell.row).arg(cell.column);
   if (image.isRegular())
     text += QString("   tilt %1°, azimuth %2°")
-                .arg(number(image.lineTilt(cell.row) / kDegree, 2),
+                .arg(number(beamTilt(image, matrix_->geometry, cell.row, cell.column) / kDegree, 2),
                      number(matrix_->geometry.azimuthOfColumn(cell.column) / kDegree, 2));
   const std::size_t k = image.index(cell.row, cell.column);
   if (!image.hasPoint(k)) return text + "   " + qt(cellCodeText(image.code(k)));
