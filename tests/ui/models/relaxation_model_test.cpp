@@ -128,7 +128,7 @@ TEST_F(RelaxationModelTest, StepByStepItComesToTheSameResult) {
     EXPECT_EQ(model().step(), before + 1) << "one step more, no less and no further";
   }
   ASSERT_TRUE(proposed());
-  EXPECT_GT(pauses, 3);
+  EXPECT_GE(pauses, 3);
   EXPECT_EQ(model().poses(), plain);
 }
 
