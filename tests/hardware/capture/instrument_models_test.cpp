@@ -109,7 +109,7 @@ TEST_F(ModelsTest, EveryScannerBringsTheSitesOwnLines) {
     for (const auto& [row, line] : lines_) {
       EXPECT_NEAR(line.tilt_rad, geometry_.tiltOfRow(row), test::kTiltToleranceRad);
       EXPECT_EQ(differs(bench_->rig().view(), geometry_, line), "") << "row " << row;
-      EXPECT_GT(std::ranges::count(line.code, cell_code::kMeasured), each.columns / 4) << "row " << row;
+      EXPECT_GT(std::ranges::count(line.code, cell_code::kMeasured), each.columns / 10) << "row " << row;
     }
   }
 }
