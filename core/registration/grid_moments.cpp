@@ -202,24 +202,25 @@ class RegularTiles {
     const float* here = inverse_.row(row);
     const float* before = inverse_.row(row - 1);
     const float* after = inverse_.row(row + 1);
+    const std::ptrdiff_t apart = apart_;
+    const float scale = 1.0F / static_cast<float>(apart_ * apart_);
     for (std::size_t k = 0; k < columns_; ++k) {
       const float q = here[k];
       if (!drop_edges_) {
         used[k] = q > 0.0F ? 1.0F : 0.0F;
         continue;
       }
-      const auto apart = static_cast<std::size_t>(apart_);
-      if (apart > 1 && (k < apart || k + apart >= columns_)) {
-        used[k] = 0.0F;
-        continue;
-      }
       const float* at = here + k;
-      const float bend_along =
-          std::abs(at[-apart_] + at[apart_] - two_cos_azimuth_ * q) / static_cast<float>(apart_ * apart_);
+      const float bend_along = scale * std::abs(at[-apart] + at[apart] - two_cos_azimuth_ * q);
       const float bend_across = std::abs(before[k] + after[k] - two_cos_tilt_ * q);
       // |bend| r^2 below the bound; a cell without a point fails on 0 < 0.
       used[k] = std::max(bend_along, bend_across) < kBend_m * q * q ? 1.0F : 0.0F;
     }
+    // Further out than one, the border's neighbours are cells of another row.
+    if (!drop_edges_ || apart_ == 1) return;
+    for (std::size_t k = 0; k < columns_; ++k)
+      if (k < static_cast<std::size_t>(apart_) || k + static_cast<std::size_t>(apart_) >= columns_)
+        used[k] = 0.0F;
   }
 
   const RangeImage& image_;
