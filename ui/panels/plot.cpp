@@ -38,6 +38,7 @@ struct Plot::Parts {
   QVector<QwtPlotSeriesItem*> series;
   QVector<bool> is_dots;
   bool legend_changed = false;
+  bool restyle_due = false;
   PlotColours colours;
 
   QwtPlotCurve* curve(int k) const { return static_cast<QwtPlotCurve*>(series[k]); }
@@ -86,6 +87,17 @@ void Plot::setColours(const PlotColours& colours) {
 void Plot::changeEvent(QEvent* event) {
   QWidget::changeEvent(event);
   if (event->type() == QEvent::FontChange) restyle();
+  // A style sheet above gives the parts back the palettes they had before it, after this has been told.
+  if (event->type() == QEvent::StyleChange && !parts_->restyle_due) {
+    parts_->restyle_due = true;
+    QMetaObject::invokeMethod(
+        this,
+        [this] {
+          parts_->restyle_due = false;
+          restyle();
+        },
+        Qt::QueuedConnection);
+  }
 }
 
 void Plot::restyle() {
@@ -194,8 +206,8 @@ void Plot::setMark(std::optional<double> x) {
 
 void Plot::redraw() {
   parts_->plot->replot();
-  // A legend that entries come to while its plot is hidden leaves out those that were there before: it is made
-  // anew.
+  // A legend that entries come to while its plot is hidden leaves out those that were there before: it is
+  // made anew.
   if (std::exchange(parts_->legend_changed, false) && parts_->legend) showLegend();
   if (parts_->rescaler) parts_->rescaler->rescale();
 }

@@ -131,7 +131,7 @@ TEST(RoundTripPtx, AndAgain) {
   ASSERT_TRUE(once);
   const Scan& scan = once->scans[0].scan;
   ASSERT_TRUE(
-      writeCloud(folder / "b.ptx", cloudForExport({{0, scan.odometry, {}, scan.image, scan.geometry}})));
+      writeCloud(folder / "b.ptx", cloudForExport({{0, scan.odometry, {}, scan.image, scan.geometry, {}}})));
   const auto twice = readScans(folder / "b.ptx", {});
   ASSERT_TRUE(twice);
   ExportScan first = sweep(0, false);

@@ -59,9 +59,11 @@ TEST_F(StepperViewTest, TheGizmoAndTheKeysMoveTheStart) {
   const QPointF handle = placeOf(view->layer().handlePixel(ui::GizmoHandle::X));
   const QPointF far = handle + (handle - placeOf(view->scene().pixelOf(before.translation())));
   send(view->view(), QEvent::MouseButtonPress, handle, Qt::LeftButton, Qt::LeftButton);
-  send(view->view(), QEvent::MouseMove, 0.5 * (handle + far), Qt::NoButton, Qt::LeftButton);
-  ASSERT_TRUE(waitFor([&] { return stepper().start().ghost().has_value(); }))
-      << "where it would end is shown while the button is still down";
+  send(view->view(), QEvent::MouseMove, handle + 0.15 * (far - handle), Qt::NoButton, Qt::LeftButton);
+  ASSERT_TRUE(waitFor([&] {
+    const auto& ghost = stepper().start().ghost();
+    return ghost && ghost->succeeded();
+  })) << "where it would end is shown while the button is still down";
   const QImage with = view->picture();
   view->layer().setGhost({});
   EXPECT_NE(view->picture(), with);
