@@ -130,17 +130,17 @@ Json frames(const std::filesystem::path& folder, std::size_t wanted, const std::
   const double before_open = nowMs();
   if (!window->workspace().session().open(ui::qt((folder / "large.tiltmap").string()))) return result;
   result["open_ms"] = nowMs() - before_open;
-  result["points"] = scene.pointsDrawn();
   result["scans"] = window->workspace().snapshot()->scans().size();
   int swapped = 0;
   QObject::connect(&widget, &QOpenGLWidget::frameSwapped, [&swapped] { ++swapped; });
   const auto untilRefined = [&] {
     const double begin = nowMs();
     do QApplication::processEvents(QEventLoop::AllEvents, 5);
-    while (scene.isMoving() || !scene.isRefined());
+    while (panel->isReading() || scene.isMoving() || !scene.isRefined());
     return nowMs() - begin;
   };
   result["first_ms"] = untilRefined();
+  result["points"] = scene.pointsDrawn();
 
   // Turned with the mouse; each frame is on the screen before the next move.
   std::vector<double> times;
@@ -216,8 +216,10 @@ Json start(const std::string& project, const std::filesystem::path& folder) {
   int swapped = 0;
   QObject::connect(qobject_cast<QOpenGLWidget*>(panel->view()), &QOpenGLWidget::frameSwapped,
                    [&swapped] { ++swapped; });
-  while (swapped == 0 || !panel->scene().isRefined()) QApplication::processEvents(QEventLoop::AllEvents, 5);
+  while (swapped == 0 || panel->isReading() || !panel->scene().isRefined())
+    QApplication::processEvents(QEventLoop::AllEvents, 5);
   result["drawn_ms"] = nowMs() - before_open;
+  result["points"] = panel->scene().pointsDrawn();
   result["scans"] = window->workspace().snapshot()->scans().size();
   QElapsedTimer settle;
   settle.start();
