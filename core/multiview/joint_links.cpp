@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include "core/base/parallel.h"
+#include "core/base/ranks.h"
 #include "core/registration/pair_choice.h"
 
 namespace tiltmap {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "core/base/ranks.h"
 #include "core/base/text.h"
 #include "core/products/residuals.h"
 #include "core/scan/filters.h"
@@ -27,16 +28,10 @@ void chooseEnds(DepthImage& image) {
   for (const float v : image.value)
     if (std::isfinite(v)) values.push_back(v);
   if (values.empty()) return;
-  const auto at = [&](double share) {
-    const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + k, values.end());
-    return static_cast<double>(values[static_cast<std::size_t>(k)]);
-  };
-  image.low = at(0.02);
-  image.high = at(0.98);
+  image.low = static_cast<double>(quantileOf(values, 0.02));
+  image.high = static_cast<double>(quantileOf(values, 0.98));
   if (image.isSigned()) {
-    // Three deviations, as the median tells them: trees are not to make everything else grey.
-    image.high = std::max(3.0 * 1.4826 * image.median_residual_m, 1e-3);
+    image.high = largestShownResidual(image.median_residual_m);
     image.low = -image.high;
   }
   if (!(image.high - image.low > 1e-6)) image.high = image.low + 1.0;

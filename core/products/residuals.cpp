@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/parallel.h"
+#include "core/base/ranks.h"
 #include "core/scan/normals.h"
 
 namespace tiltmap {
@@ -211,9 +212,11 @@ ResidualSummary summaryOf(const std::vector<float>& residuals) {
   for (const float r : residuals)
     if (std::isfinite(r)) sizes.push_back(std::abs(r));
   if (sizes.empty()) return {};
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return {sizes.size(), *middle};
+  return {sizes.size(), medianOf(std::move(sizes))};
+}
+
+double largestShownResidual(double median_m) {
+  return std::max(3.0 * 1.4826 * median_m, 1e-3);
 }
 
 }  // namespace tiltmap

@@ -98,5 +98,8 @@ struct ResidualSummary {
   double median_m = 0.0;
 };
 ResidualSummary summaryOf(const std::vector<float>& residuals);
+// Where a colour scale about zero ends, metres: three deviations, as the median of the sizes tells them, so
+// that trees do not make everything else grey; at least a millimetre.
+double largestShownResidual(double median_m);
 
 }  // namespace tiltmap

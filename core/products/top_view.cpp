@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/ranks.h"
 #include "core/base/text.h"
 #include "core/products/top_view_marks.h"
 
@@ -25,13 +26,8 @@ struct Span {
 // The middle `share` of the values, and nothing for none.
 Span middleOf(std::vector<double>& values, double share) {
   if (values.empty()) return {};
-  const auto at = [&](double part) {
-    const auto k = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1) + 0.5);
-    std::nth_element(values.begin(), values.begin() + k, values.end());
-    return values[static_cast<std::size_t>(k)];
-  };
   const double cut = 0.5 * (1.0 - share);
-  return {at(cut), at(1.0 - cut)};
+  return {quantileOf(values, cut), quantileOf(values, 1.0 - cut)};
 }
 
 template <class Use>
@@ -131,9 +127,7 @@ double fullOf(const Layers& layers) {
   for (const double f : layers.fullness)
     if (f > 0.0) filled.push_back(f);
   if (filled.empty()) return 1.0;
-  const auto k = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(filled.size() - 1));
-  std::nth_element(filled.begin(), filled.begin() + k, filled.end());
-  return std::max(1.0, filled[static_cast<std::size_t>(k)]);
+  return std::max(1.0, quantileOf(filled, 0.99));
 }
 
 Span heightsOf(const TopViewInput& input) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/ranks.h"
+
 namespace tiltmap {
 
 namespace {
@@ -15,13 +17,6 @@ constexpr int kRounds = 5;                    // the ratio is within a percent o
 constexpr int kTrimmedRounds = 3;
 constexpr double kEnough = 0.02;
 constexpr std::size_t kEnoughValues = 500;
-
-// The value that one in `share` lies below; reorders.
-double quantileOf(std::vector<double>& values, std::size_t share) {
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(values.size() / share);
-  std::ranges::nth_element(values, place);
-  return *place;
-}
 
 // Evenly spread, as many as tell a scale within a few percent.
 std::vector<double> sampled(const std::vector<double>& all) {
@@ -37,12 +32,7 @@ std::vector<double> sampled(const std::vector<double>& all) {
 double typicalOf(const std::vector<double>& values) {
   if (values.empty()) throw std::invalid_argument("typicalOf: no values");
   std::vector<double> some = sampled(values);
-  return quantileOf(some, 2);
-}
-
-double medianOf(std::vector<double> values) {
-  if (values.empty()) throw std::invalid_argument("medianOf: no values");
-  return quantileOf(values, 2);
+  return valueAtRank(some, some.size() / 2);
 }
 
 double excessDeviation(const std::vector<double>& all_residuals_m,
@@ -65,7 +55,7 @@ double excessDeviation(const std::vector<double>& all_residuals_m,
   for (int round = 0; round < kRounds; ++round) {
     squares.clear();
     for (std::size_t i = 0; i < residuals_m.size(); ++i) squares.push_back(square(i, excess));
-    if (!take(quantileOf(squares, 4) / kQuarterSquare)) break;
+    if (!take(valueAtRank(squares, squares.size() / 4) / kQuarterSquare)) break;
   }
   for (int round = 0; round < kTrimmedRounds; ++round) {
     squares.clear(), variances.clear();
@@ -74,8 +64,8 @@ double excessDeviation(const std::vector<double>& all_residuals_m,
       if (s < kFittingSquare) squares.push_back(s), variances.push_back(variances_m2[i]);
     }
     if (squares.empty()) break;
-    typical = quantileOf(variances, 2);
-    if (!take(quantileOf(squares, 2) / kMedianSquare)) break;
+    typical = valueAtRank(variances, variances.size() / 2);
+    if (!take(valueAtRank(squares, squares.size() / 2) / kMedianSquare)) break;
   }
   return std::sqrt(excess);
 }

@@ -27,7 +27,7 @@ struct LossScale {
 // 500 are looked at, evenly spread. Both of the same size; 0 where they are empty.
 double excessDeviation(const std::vector<double>& residuals_m, const std::vector<double>& variances_m2);
 
-double typicalOf(const std::vector<double>& values);  // the median of at most 500 of them, evenly spread
-double medianOf(std::vector<double> values);          // the upper one of an even number; not empty
+// The median of at most 500 of the values, evenly spread.
+double typicalOf(const std::vector<double>& values);
 
 }  // namespace tiltmap

@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/ranks.h"
 #include "core/base/text.h"
+#include "core/products/residuals.h"
 #include "core/scan/normals.h"
 #include "core/scan/reduction.h"
 
@@ -202,19 +204,12 @@ ColourRange colourRangeOf(std::vector<float> values, SceneColouring colouring) {
   std::erase_if(values, [](float v) { return !std::isfinite(v); });
   if (values.empty()) return {};
   if (colouring == SceneColouring::Residual) {
-    // Three deviations, as the median tells them: trees are not to make everything else grey.
     for (float& v : values) v = std::abs(v);
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    const double high = std::max(3.0 * 1.4826 * static_cast<double>(*middle), 1e-3);
+    const double high = largestShownResidual(static_cast<double>(medianOf(std::move(values))));
     return {-high, high, true};
   }
   const double share = colouring == SceneColouring::Age ? 0.0 : 0.02;
-  const auto at = [&](double s) {
-    const auto k = static_cast<std::ptrdiff_t>(s * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + k, values.end());
-    return static_cast<double>(values[static_cast<std::size_t>(k)]);
-  };
+  const auto at = [&](double s) { return static_cast<double>(quantileOf(values, s)); };
   ColourRange range{at(share), at(1.0 - share), true};
   if (!(range.high - range.low > 1e-6)) range.high = range.low + 1.0;
   return range;

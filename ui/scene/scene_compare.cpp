@@ -1,4 +1,5 @@
 // Two stages compared, a part cut out, distances measured.
+#include "core/base/ranks.h"
 #include "ui/models/project_words.h"
 #include "ui/models/strings.h"
 #include "ui/scene/scene_parts.h"
@@ -79,9 +80,7 @@ double Scene::scannerHeight() const {
   std::vector<double> heights;
   for (const Pose& stop : parts_->stops[0]) heights.push_back(stop.translation().z());
   if (heights.empty()) return 0.0;
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::nth_element(heights.begin(), middle, heights.end());
-  return *middle;
+  return medianOf(std::move(heights));
 }
 
 std::vector<Vector3d> Scene::Parts::handles() const {

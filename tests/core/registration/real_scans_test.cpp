@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/registration/loss_scale.h"
+#include "core/base/ranks.h"
 #include "core/registration/register_pair.h"
 #include "core/scan/kd_tree.h"
 #include "core/scan/normals.h"
