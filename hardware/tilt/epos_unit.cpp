@@ -22,10 +22,6 @@ constexpr double kMoveFactor = 2.0, kMoveExtraS = 2.0;
 constexpr double kPauseS = 0.05;
 constexpr int kAttempts = 3;  // to bring the tilt where it should stand
 
-std::string degrees(double angle_rad) {
-  return fixedReal(angle_rad / kDegree, 2) + " deg";
-}
-
 }  // namespace
 
 EposUnit::EposUnit(std::unique_ptr<ByteChannel> channel, Clock& clock, TiltDrive drive, EposSettings settings)
@@ -104,12 +100,7 @@ Result<std::uint32_t> EposUnit::ask(const EposRequest& request, const JobControl
 }
 
 Status EposUnit::checkAngle(double angle_rad) const {
-  if (angle_rad >= drive_.minimum_rad - 1e-9 && angle_rad <= drive_.maximum_rad + 1e-9) return {};
-  return fail(
-      "a tilt of " + degrees(angle_rad) + " lies outside the limits " + degrees(drive_.minimum_rad) + " to " +
-          degrees(drive_.maximum_rad),
-      name_,
-      "choose start, step and lines within them, or give other limits (min, max) with the tilt's address");
+  return withinLimits(angle_rad, drive_.minimum_rad, drive_.maximum_rad, name_, "with the tilt's address");
 }
 
 void EposUnit::plan() {
@@ -245,8 +236,8 @@ Status EposUnit::arrivedOrAgain(bool& there) {
   if (off > drive_.tolerance_rad && (same || !irregular_)) {
     // It stands, but elsewhere.
     if (++attempts_ > kAttempts)
-      return lost({"the tilt does not reach " + degrees(drive_.angleOf(target_)) + ": it stands at " +
-                       degrees(drive_.angleOf(now_at)),
+      return lost({"the tilt does not reach " + angleText(drive_.angleOf(target_)) + ": it stands at " +
+                       angleText(drive_.angleOf(now_at)),
                    name_,
                    "see whether something blocks it and whether the motor has its supply; "
                    "going on with the capture searches home again"});

@@ -15,10 +15,6 @@ constexpr double kSettleS = 1.0;
 // How far a typed angle may be from the wanted one: more is a slip of the pen.
 constexpr double kPlausibleRad = 5.0 * kDegree;
 
-std::string degrees(double angle_rad) {
-  return fixedReal(angle_rad / kDegree, 2);
-}
-
 }  // namespace
 
 struct ManualTiltUnit::Question {
@@ -48,11 +44,7 @@ Status ManualTiltUnit::prepare(const JobControl&) {
 }
 
 Status ManualTiltUnit::checkAngle(double angle_rad) const {
-  if (angle_rad >= minimum_rad_ - 1e-9 && angle_rad <= maximum_rad_ + 1e-9) return {};
-  return fail("a tilt of " + degrees(angle_rad) + " deg lies outside the limits " + degrees(minimum_rad_) +
-                  " to " + degrees(maximum_rad_) + " deg",
-              name_,
-              "choose start, step and lines within them, or give other limits (min, max) behind manual:");
+  return withinLimits(angle_rad, minimum_rad_, maximum_rad_, name_, "behind manual:");
 }
 
 Status ManualTiltUnit::moveTo(double angle_rad) {
@@ -63,7 +55,7 @@ Status ManualTiltUnit::moveTo(double angle_rad) {
   auto question = std::make_shared<Question>();
   question_ = question;
   const std::string text =
-      "set the tilt to " + degrees(angle_rad) + " deg and press Enter (or type the angle where it stands)";
+      "set the tilt to " + angleText(angle_rad) + " and press Enter (or type the angle where it stands)";
   asker_ = std::jthread([question, text, ask = ask_](const std::stop_token& stop) {
     auto answer = ask(text, stop);
     const std::lock_guard lock(question->mutex);

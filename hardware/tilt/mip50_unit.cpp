@@ -16,10 +16,6 @@ namespace {
 constexpr double kPause = 0.05;  // before a position is read once more
 constexpr int kAttempts = 3;     // to bring the tilt where it should stand
 
-std::string degrees(double angle_rad) {
-  return fixedReal(angle_rad / kDegree, 2) + " deg";
-}
-
 }  // namespace
 
 Mip50Unit::Mip50Unit(std::unique_ptr<ByteChannel> channel, Clock& clock, TiltDrive drive, Mip50Table table,
@@ -126,12 +122,7 @@ Status Mip50Unit::prepare(const JobControl& job) {
 }
 
 Status Mip50Unit::checkAngle(double angle_rad) const {
-  if (angle_rad >= drive_.minimum_rad - 1e-9 && angle_rad <= drive_.maximum_rad + 1e-9) return {};
-  return fail(
-      "a tilt of " + degrees(angle_rad) + " lies outside the limits " + degrees(drive_.minimum_rad) + " to " +
-          degrees(drive_.maximum_rad),
-      name_,
-      "choose start, step and lines within them, or give other limits (min, max) with the tilt's address");
+  return withinLimits(angle_rad, drive_.minimum_rad, drive_.maximum_rad, name_, "with the tilt's address");
 }
 
 Status Mip50Unit::plan() {
@@ -187,8 +178,8 @@ Result<bool> Mip50Unit::arrived() {
   } else if (same || !irregular_) {
     // It stands, but elsewhere.
     if (++attempts_ > kAttempts)
-      return fail(lost({"the tilt does not reach " + degrees(drive_.angleOf(target_)) + ": it stands at " +
-                            degrees(drive_.angleOf(position_)),
+      return fail(lost({"the tilt does not reach " + angleText(drive_.angleOf(target_)) + ": it stands at " +
+                            angleText(drive_.angleOf(position_)),
                         name_,
                         "see whether something blocks it and whether the motor has its supply; "
                         "going on with the capture searches home again"})

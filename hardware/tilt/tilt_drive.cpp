@@ -16,6 +16,19 @@ double countsPerRadian(const TiltDrive& drive) {
 
 }  // namespace
 
+std::string angleText(double angle_rad) {
+  return fixedReal(angle_rad / kDegree, 2) + " deg";
+}
+
+Status withinLimits(double angle_rad, double minimum_rad, double maximum_rad, const std::string& name,
+                    const std::string& given_with) {
+  if (angle_rad >= minimum_rad - 1e-9 && angle_rad <= maximum_rad + 1e-9) return {};
+  return fail("a tilt of " + angleText(angle_rad) + " lies outside the limits " + angleText(minimum_rad) +
+                  " to " + angleText(maximum_rad),
+              name,
+              "choose start, step and lines within them, or give other limits (min, max) " + given_with);
+}
+
 double TiltDrive::angleOf(std::int64_t counts) const {
   return static_cast<double>(counts - level_count) / countsPerRadian(*this);
 }

@@ -81,6 +81,13 @@ struct TiltDrive {
   Status check() const;
 };
 
+// "12.30 deg".
+std::string angleText(double angle_rad);
+// Refuses an angle outside the limits, in the words of the unit `name`; `given_with` says where its limits
+// come from.
+Status withinLimits(double angle_rad, double minimum_rad, double maximum_rad, const std::string& name,
+                    const std::string& given_with);
+
 // The stations of a move: where each segment ends, the target last. From above, it first goes approach_rad
 // below the target (as far as the limits let it).
 std::vector<std::int64_t> segmentsOf(const TiltDrive& drive, std::int64_t from, std::int64_t to);

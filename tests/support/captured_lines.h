@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/project/project.h"
+#include "hardware/capture/scanner_unit.h"
 #include "hardware/emulator/rig.h"
 
 namespace tiltmap::test {
@@ -20,6 +21,19 @@ inline std::string differsFromSite(const RigView& view, const ScannerGeometry& g
              std::to_string(code[j]) + " instead of " + std::to_string(truth[j].range_m) + " m, code " +
              std::to_string(truth[j].code);
   return {};
+}
+
+// The next whole line of a scanner that sends, on a clock that costs nothing.
+inline Result<LineTaken> nextLine(VirtualClock& clock, ScannerUnit& scanner, double limit_s = 3.0) {
+  const Instant end = clock.now() + durationOf(limit_s);
+  while (clock.now() < end) {
+    auto event = scanner.poll();
+    if (!event) return fail(event.error());
+    if (*event)
+      if (auto* taken = std::get_if<LineTaken>(&**event)) return std::move(*taken);
+    clock.sleepFor(durationOf(0.0005));
+  }
+  return fail("nothing came", "test", "");
 }
 
 // How far the tilt of a row may be from where it was sent.

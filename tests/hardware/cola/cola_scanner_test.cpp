@@ -5,6 +5,7 @@
 #include "hardware/cola/cola_scanner_unit.h"
 #include "hardware/emulator/cola_emulator.h"
 #include "hardware/transport/memory_channel.h"
+#include "support/captured_lines.h"
 
 namespace tiltmap {
 namespace {
@@ -28,17 +29,7 @@ class ColaScannerTest : public ::testing::Test {
     if (emulator_) clock_.detach(*emulator_);
     emulator_.reset();
   }
-  Result<LineTaken> line(double limit_s = 3.0) {
-    const Instant end = clock_.now() + durationOf(limit_s);
-    while (clock_.now() < end) {
-      auto event = unit_->poll();
-      if (!event) return fail(event.error());
-      if (*event)
-        if (auto* taken = std::get_if<LineTaken>(&**event)) return std::move(*taken);
-      clock_.sleepFor(durationOf(0.0005));
-    }
-    return fail("nothing came", "test", "");
-  }
+  Result<LineTaken> line(double limit_s = 3.0) { return test::nextLine(clock_, *unit_, limit_s); }
 
   VirtualClock clock_;
   RoundView view_{5.0F};

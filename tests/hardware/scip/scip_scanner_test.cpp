@@ -5,6 +5,7 @@
 #include "hardware/emulator/scip_emulator.h"
 #include "hardware/scip/scip_scanner_unit.h"
 #include "hardware/transport/memory_channel.h"
+#include "support/captured_lines.h"
 
 namespace tiltmap {
 namespace {
@@ -32,17 +33,7 @@ class ScipScannerTest : public ::testing::Test {
     if (emulator_) clock_.detach(*emulator_);
     emulator_.reset();
   }
-  Result<LineTaken> line(double limit_s = 3.0) {
-    const Instant end = clock_.now() + durationOf(limit_s);
-    while (clock_.now() < end) {
-      auto event = unit_->poll();
-      if (!event) return fail(event.error());
-      if (*event)
-        if (auto* taken = std::get_if<LineTaken>(&**event)) return std::move(*taken);
-      clock_.sleepFor(durationOf(0.0005));
-    }
-    return fail("nothing came", "test", "");
-  }
+  Result<LineTaken> line(double limit_s = 3.0) { return test::nextLine(clock_, *unit_, limit_s); }
   void expectLine() {
     const auto taken = line();
     ASSERT_TRUE(taken) << taken.error().what;

@@ -2,15 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include "core/geometry/pose.h"
 #include "hardware/emulator/epos_emulator.h"
-#include "hardware/transport/memory_channel.h"
+#include "support/tilt_bench.h"
 
 namespace tiltmap {
 namespace {
 
 // A unit and an emulated controller, on a clock that costs nothing.
-class EposUnitTest : public ::testing::TestWithParam<EposProtocol> {
+class EposUnitTest : public ::testing::TestWithParam<EposProtocol>,
+                     protected test_support::TiltBench<EposUnit, EposEmulator> {
  protected:
   void SetUp() override {
     settings_.protocol = GetParam();
@@ -18,48 +18,15 @@ class EposUnitTest : public ::testing::TestWithParam<EposProtocol> {
     make();
   }
   void make() {
-    if (emulator_) clock_.detach(*emulator_);
-    unit_.reset();
+    detach();
     pair_ = MemoryPair::make(clock_, "test");
     drive_.level_count = settings_.levelCount();
-    emulator_ = std::make_unique<EposEmulator>(clock_, *pair_.device, settings_);
-    clock_.attach(*emulator_);
+    attach(std::make_unique<EposEmulator>(clock_, *pair_.device, settings_));
     unit_ = std::make_unique<EposUnit>(std::move(pair_.host), clock_, drive_, wanted_);
   }
-  void TearDown() override { clock_.detach(*emulator_); }
 
-  Result<TiltReading> wait(double limit_s = 60.0) {
-    const Instant end = clock_.now() + durationOf(limit_s);
-    while (clock_.now() < end) {
-      auto reading = unit_->poll();
-      if (!reading) return fail(reading.error());
-      if (*reading) {
-        clock_.sleepUntil((*reading)->settled);
-        return **reading;
-      }
-      clock_.sleepFor(durationOf(0.001));
-    }
-    return fail("nothing came", "test", "");
-  }
-  Result<TiltReading> goTo(double degrees) {
-    if (Status status = unit_->moveTo(degrees * kDegree); !status) return fail(status.error());
-    return wait();
-  }
-  void expectAt(double degrees) {
-    const auto reading = goTo(degrees);
-    ASSERT_TRUE(reading) << reading.error().what << " / " << reading.error().remedy;
-    EXPECT_NEAR(reading->angle_rad / kDegree, degrees, 0.02);
-    EXPECT_NEAR(reading->angle_rad, emulator_->angle(clock_.now()), 1e-6) << "what is said is where it is";
-    EXPECT_TRUE(emulator_->still(reading->settled));
-  }
-
-  VirtualClock clock_;
-  TiltDrive drive_;
   EposSettings wanted_;
   EposEmulatorSettings settings_;
-  MemoryPair pair_;
-  std::unique_ptr<EposEmulator> emulator_;
-  std::unique_ptr<EposUnit> unit_;
 };
 std::string protocolName(const ::testing::TestParamInfo<EposProtocol>& test) {
   return eposProtocolName(test.param);

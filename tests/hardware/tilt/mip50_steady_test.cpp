@@ -4,10 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/geometry/pose.h"
 #include "hardware/emulator/mip50_emulator.h"
 #include "hardware/tilt/mip50_unit.h"
-#include "hardware/transport/memory_channel.h"
+#include "support/tilt_bench.h"
 
 namespace tiltmap {
 namespace {
@@ -26,21 +25,18 @@ TEST(SteadyMotion, IsALineBetweenItsRamps) {
   EXPECT_EQ((SteadyMotion{}).when(1.0), kNever);
 }
 
-class Mip50SteadyTest : public ::testing::Test {
+class Mip50SteadyTest : public ::testing::Test, protected test_support::TiltBench<Mip50Unit, Mip50Emulator> {
  protected:
   void SetUp() override { make({}); }
   void make(Mip50EmulatorSettings settings) {
-    if (emulator_) clock_.detach(*emulator_);
-    unit_.reset();
+    detach();
     pair_ = MemoryPair::make(clock_, "test");
     ASSERT_TRUE(pair_.host->setLine({19200, Parity::None}));
     drive_.level_count = settings.levelCount();
-    emulator_ = std::make_unique<Mip50Emulator>(clock_, *pair_.device, settings);
-    clock_.attach(*emulator_);
+    attach(std::make_unique<Mip50Emulator>(clock_, *pair_.device, settings));
     unit_ = std::make_unique<Mip50Unit>(std::move(pair_.host), clock_, drive_, settings.table);
     ASSERT_TRUE(unit_->prepare({}));
   }
-  void TearDown() override { clock_.detach(*emulator_); }
 
   struct Seen {
     Instant at;
@@ -75,11 +71,6 @@ class Mip50SteadyTest : public ::testing::Test {
     }
   }
 
-  VirtualClock clock_;
-  TiltDrive drive_;
-  MemoryPair pair_;
-  std::unique_ptr<Mip50Emulator> emulator_;
-  std::unique_ptr<Mip50Unit> unit_;
   std::vector<Seen> seen_;
   std::optional<Instant> at_;
   std::function<void()> then_;

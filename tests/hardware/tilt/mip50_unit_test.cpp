@@ -2,60 +2,25 @@
 
 #include <gtest/gtest.h>
 
-#include "core/geometry/pose.h"
 #include "hardware/emulator/mip50_emulator.h"
-#include "hardware/transport/memory_channel.h"
+#include "support/tilt_bench.h"
 
 namespace tiltmap {
 namespace {
 
 // A unit and an emulated controller, on a clock that costs nothing.
-class Mip50UnitTest : public ::testing::Test {
+class Mip50UnitTest : public ::testing::Test, protected test_support::TiltBench<Mip50Unit, Mip50Emulator> {
  protected:
   void SetUp() override { make({}); }
 
   void make(Mip50EmulatorSettings settings, int host_baud = 19200) {
-    if (emulator_) clock_.detach(*emulator_);
-    unit_.reset();
+    detach();
     pair_ = MemoryPair::make(clock_, "test");
     ASSERT_TRUE(pair_.host->setLine({host_baud, Parity::None}));
     drive_.level_count = settings.levelCount();
-    emulator_ = std::make_unique<Mip50Emulator>(clock_, *pair_.device, settings);
-    clock_.attach(*emulator_);
+    attach(std::make_unique<Mip50Emulator>(clock_, *pair_.device, settings));
     unit_ = std::make_unique<Mip50Unit>(std::move(pair_.host), clock_, drive_, settings.table);
   }
-  void TearDown() override { clock_.detach(*emulator_); }
-
-  Result<TiltReading> wait(double limit_s = 60.0) {
-    const Instant end = clock_.now() + durationOf(limit_s);
-    while (clock_.now() < end) {
-      auto reading = unit_->poll();
-      if (!reading) return fail(reading.error());
-      if (*reading) {
-        clock_.sleepUntil((*reading)->settled);
-        return **reading;
-      }
-      clock_.sleepFor(durationOf(0.001));
-    }
-    return fail("nothing came", "test", "");
-  }
-  Result<TiltReading> goTo(double degrees) {
-    if (Status status = unit_->moveTo(degrees * kDegree); !status) return fail(status.error());
-    return wait();
-  }
-  void expectAt(double degrees) {
-    const auto reading = goTo(degrees);
-    ASSERT_TRUE(reading) << reading.error().what << " / " << reading.error().remedy;
-    EXPECT_NEAR(reading->angle_rad / kDegree, degrees, 0.02);
-    EXPECT_NEAR(reading->angle_rad, emulator_->angle(clock_.now()), 1e-6) << "what is said is where it is";
-    EXPECT_TRUE(emulator_->still(reading->settled));
-  }
-
-  VirtualClock clock_;
-  TiltDrive drive_;
-  MemoryPair pair_;
-  std::unique_ptr<Mip50Emulator> emulator_;
-  std::unique_ptr<Mip50Unit> unit_;
 };
 
 TEST_F(Mip50UnitTest, FindsHomeAndGoesWhereItIsSent) {
