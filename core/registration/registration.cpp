@@ -125,8 +125,7 @@ Registration::Registration(PreparedScanPtr fixed, PreparedScanPtr moving, const 
   rejection_.distance_bound_m = settings_.max_distance_m;
   loss_ = firstLossScale(settings_);
   if (settings_.loss == Loss::Annealed)
-    own_scale_steps_left_ =
-        settings_.refine && fixed_->raster && moving_->raster ? kOwnScaleStepsToRefine : kOwnScaleSteps;
+    own_scale_steps_left_ = settings_.refine && bothAreBlocks() ? kOwnScaleStepsToRefine : kOwnScaleSteps;
 }
 
 StepReport Registration::step(const std::stop_token& stop) {
@@ -156,7 +155,7 @@ StepReport Registration::step(const std::stop_token& stop) {
 
 void Registration::findPairsOfStep(StepReport& report) {
   // Annealing needs no fine pose; blocks are many.
-  const bool blocks = fixed_->raster && moving_->raster && settings_.loss == Loss::Annealed;
+  const bool blocks = bothAreBlocks() && settings_.loss == Loss::Annealed;
   const bool coarse = settings_.pair_choice == PairChoice::Projective && !loss_.isOwn() &&
                       (blocks || loss_.scale_m > settings_.wide_search_above_m);
   report.rejected =
@@ -200,8 +199,12 @@ std::optional<StopReason> Registration::advance(StepReport& report) {
   return std::nullopt;
 }
 
+bool Registration::bothAreBlocks() const {
+  return fixed_->raster && moving_->raster;
+}
+
 bool Registration::canRefine() const {
-  return settings_.refine && loss_.isOwn() && fixed_->raster && moving_->raster;
+  return settings_.refine && loss_.isOwn() && bothAreBlocks();
 }
 
 std::optional<StopReason> Registration::refineStep(StepReport& report) {

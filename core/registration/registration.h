@@ -103,6 +103,8 @@ class Registration {
   void measure(Metric metric, const LinearSystem& system, StepReport& report);
   void updateLossScale();
   std::optional<StopReason> limitReached() const;
+  // Patches of either scan are blocks of its matrix, so that there are cells to hold against them.
+  bool bothAreBlocks() const;
   bool canRefine() const;
   std::optional<StopReason> refineStep(StepReport& report);
   std::optional<StopReason> endOfStep(const StepReport& report, const PoseDifference& motion) const;

@@ -67,7 +67,8 @@ Result<RegistrationTrace> RegistrationTrace::begin(const Scan& fixed, const Scan
   return begin(prepare(fixed, settings), prepare(moving, settings), start_fixed_from_moving, settings);
 }
 
-Result<RegistrationTrace> RegistrationTrace::begin(const PreparedScanPtr& fixed, const PreparedScanPtr& moving,
+Result<RegistrationTrace> RegistrationTrace::begin(const PreparedScanPtr& fixed,
+                                                   const PreparedScanPtr& moving,
                                                    const Pose& start_fixed_from_moving,
                                                    const RegistrationSettings& settings) {
   if (const Status status = checkSettings(settings); !status) return fail(status.error());
@@ -207,13 +208,21 @@ std::string pairSentence(const TraceAttempt& attempt, const TraceStep& step, con
   throw std::invalid_argument("pairSentence: no such reason");
 }
 
-std::string lossSentence(const TraceAttempt& attempt, const LossScale& loss) {
-  if (attempt.settings.loss == Loss::None) return "none, every kept pair counts the same";
+std::string lossSentence(const TraceAttempt& attempt, const StepReport& report) {
+  const LossScale& loss = report.loss;
+  if (report.refining)
+    return "Refinement: " + groupedInteger(std::llround(report.cells)) +
+           " cells of both scans held against the other's plane patches, all on one patch as one "
+           "measurement; "
+           "loss scale " +
+           fixedReal(attempt.settings.refine_deviations, 1) + " deviations.";
+  const std::string scale = "Loss scale: ";
+  if (attempt.settings.loss == Loss::None) return scale + "none, every kept pair counts the same.";
   if (loss.isOwn())
-    return fixedReal(loss.deviations, 1) + " deviations of each pair, " + lengthWords(loss.scale_m) +
-           " added to what its patches explain";
-  return lengthWords(loss.scale_m) +
-         (attempt.settings.loss == Loss::Annealed ? ", on its way down" : ", the same in every step");
+    return scale + fixedReal(loss.deviations, 1) + " deviations of each pair, " + lengthWords(loss.scale_m) +
+           " added to what its patches explain.";
+  return scale + lengthWords(loss.scale_m) +
+         (attempt.settings.loss == Loss::Annealed ? ", on its way down." : ", the same in every step.");
 }
 
 }  // namespace tiltmap

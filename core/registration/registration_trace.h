@@ -91,7 +91,8 @@ ResidualHistogram residualHistogram(const std::vector<TracedPair>& pairs, std::s
 std::string attemptSentence(const PairAttempt& attempt);  // "From the given start."
 // What became of a pair and why: "Kept: 12 mm apart along the normal ..."
 std::string pairSentence(const TraceAttempt& attempt, const TraceStep& step, const TracedPair& pair);
-// The scale that residuals were judged by: "0.43 m, annealed", "own deviations x 1.5 ..."; "none".
-std::string lossSentence(const TraceAttempt& attempt, const LossScale& loss);
+// What residuals were judged by in a step: "Loss scale: 0.43 m, on its way down.", or that of the refinement
+// how many cells were held against patches.
+std::string lossSentence(const TraceAttempt& attempt, const StepReport& report);
 
 }  // namespace tiltmap

@@ -137,7 +137,7 @@ void StepperFigures::refresh() {
     showNumber("step", QString("%1, %2°")
                            .arg(smallLengthText(moved.translation_m, LengthUnit::Millimetre))
                            .arg(moved.rotation_rad / kDegree, 0, 'f', 4));
-    showNumber("scale", "Loss scale: " + qt(lossSentence(attempt, report.loss)) + ".");
+    showNumber("scale", qt(lossSentence(attempt, report)));
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/text.h"
 #include "support/room_scene.h"
 
 namespace tiltmap {
@@ -245,10 +246,29 @@ TEST(PairSentence, NamesFateNumbersAndWeight) {
     if (pair.pair.kept())
       weighed |= pairSentence(ours.attempts()[0], last, pair).find("% of its weight") != std::string::npos;
   EXPECT_TRUE(weighed);
-  EXPECT_NE(lossSentence(ours.attempts()[0], ours.steps().front()->report.loss).find("2.00 m"),
-            std::string::npos);
-  EXPECT_NE(lossSentence(ours.attempts()[0], last.report.loss).find("deviations"), std::string::npos);
-  EXPECT_NE(lossSentence(trace.attempts()[0], step.report.loss).find("none"), std::string::npos);
+}
+
+TEST(LossSentence, EachStepSaysWhatResidualsWereJudgedBy) {
+  const auto says = [](const RegistrationTrace& trace, const TraceStep& step, const std::string& words) {
+    const std::string sentence = lossSentence(trace.attempts()[0], step.report);
+    EXPECT_NE(sentence.find(words), std::string::npos) << sentence;
+  };
+  const RegistrationTrace ours = ended(RegistrationSettings{});
+  says(ours, *ours.steps().front(), "Loss scale: 2.00 m, on its way down");
+  bool own = false;
+  for (const auto& step : ours.steps()) {
+    if (!step->report.loss.isOwn() || step->report.refining) continue;
+    says(ours, *step, "deviations of each pair");
+    own = true;
+  }
+  EXPECT_TRUE(own);
+  const TraceStep& last = *ours.steps().back();
+  ASSERT_TRUE(last.report.refining);
+  EXPECT_GT(last.report.cells, 1000.0);
+  says(ours, last, groupedInteger(std::llround(last.report.cells)) + " cells of both scans");
+
+  const RegistrationTrace unweighted = ended(thesis());
+  says(unweighted, *unweighted.steps().front(), "none");
 }
 
 }  // namespace
