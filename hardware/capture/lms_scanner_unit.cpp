@@ -15,6 +15,9 @@ constexpr double kTurnS = 0.01332;
 constexpr double kByteGapS = 0.06;
 // Telegrams whose beginnings are remembered: long enough ago, and the mirror may have drifted.
 constexpr std::size_t kRecent = 8;
+// Before so many have come nobody can tell whether one was held back on its way, by an adapter or by a
+// machine that was busy: they set the rhythm and are not told.
+constexpr std::size_t kRhythm = 2;
 // So many parts of a period the best guess of a whole telegram may be late by, and the rhythm still be
 // counted right; the first bytes of the one under way may be late by the rest of it.
 constexpr int kLateParts = 4;
@@ -138,9 +141,11 @@ Result<std::optional<ScannerEvent>> LmsScannerUnit::whole(const Telegram& telegr
   if (telegram.command() != kScanAnswer) return std::nullopt;  // late, of an earlier request
   const LineTimes times = timesOf(telegram.wireSize());
   const bool announced = std::exchange(told_, false);
+  const bool in_rhythm = recent_.size() >= kRhythm;
   recent_.push_back(began_);
   if (recent_.size() > kRecent) recent_.erase(recent_.begin());
   began_ = kNever;
+  if (!in_rhythm) return std::nullopt;
   auto measurement = parseMeasurement(telegram);
   if (!measurement || static_cast<int>(measurement->values.size()) != geometry_.columns)
     return ScannerEvent(LineSpoiled{"it is no scan of the kind that was asked for"});
@@ -165,7 +170,9 @@ std::optional<ScannerEvent> LmsScannerUnit::beginning() {
   const auto start = framer_.start();
   // Every byte tells when it began, the first one best of all: a pause may follow it.
   const LineTimes times = timesOf(start.size());
-  if (start.size() < 5 || told_ || start[4] != kScanAnswer || word(start, 2) + kOverhead != telegram_size_) return std::nullopt;
+  if (recent_.size() < kRhythm) return std::nullopt;
+  if (start.size() < 5 || told_ || start[4] != kScanAnswer || word(start, 2) + kOverhead != telegram_size_)
+    return std::nullopt;
   told_ = true;
   bad_then_ = framer_.counts().bad_checksum;
   return LineBegun{times};

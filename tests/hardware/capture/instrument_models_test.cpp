@@ -83,12 +83,13 @@ struct ScannerCase {
   int columns;
   double start_deg, step_deg;
   int ahead;  // the beam that looks straight ahead
+  int share;  // more than one beam in so many meets something; the URG reaches 4 m
 };
-constexpr ScannerCase kScanners[] = {{"lms111", 541, -45.0, 0.5, 270},
-                                     {"lms511", 381, -5.0, 0.5, 190},
-                                     {"urg04lx", 682, 90.0 - 340.0 * 360.0 / 1024.0, 360.0 / 1024.0, 340},
-                                     {"utm30lx", 1081, -45.0, 0.25, 540},
-                                     {"utm30lx-ew", 1081, -45.0, 0.25, 540}};
+constexpr ScannerCase kScanners[] = {{"lms111", 541, -45.0, 0.5, 270, 4},
+                                     {"lms511", 381, -5.0, 0.5, 190, 4},
+                                     {"urg04lx", 682, 90.0 - 340.0 * 360.0 / 1024.0, 360.0 / 1024.0, 340, 10},
+                                     {"utm30lx", 1081, -45.0, 0.25, 540, 4},
+                                     {"utm30lx-ew", 1081, -45.0, 0.25, 540, 4}};
 
 TEST_F(ModelsTest, EveryScannerBringsTheSitesOwnLines) {
   for (const ScannerCase& each : kScanners) {
@@ -109,7 +110,8 @@ TEST_F(ModelsTest, EveryScannerBringsTheSitesOwnLines) {
     for (const auto& [row, line] : lines_) {
       EXPECT_NEAR(line.tilt_rad, geometry_.tiltOfRow(row), test::kTiltToleranceRad);
       EXPECT_EQ(differs(bench_->rig().view(), geometry_, line), "") << "row " << row;
-      EXPECT_GT(std::ranges::count(line.code, cell_code::kMeasured), each.columns / 10) << "row " << row;
+      EXPECT_GT(std::ranges::count(line.code, cell_code::kMeasured), each.columns / each.share)
+          << "row " << row;
     }
   }
 }
@@ -234,7 +236,7 @@ TEST_F(ModelsTest, FaultsOfTheTiltUnitLoseNothing) {
 
 // Through the real serial port class, the emulators on a thread of their own, both plugs pulled.
 TEST_F(ModelsTest, AnEposOverPseudoTerminals) {
-  make("epos", 4, 4.0);
+  make("epos", 16, 4.0);  // many: a busy machine finds some of them waiting when the plugs are out already
   after_ = [&](int row) {
     if (row == 1) bench_->unplug();
   };
