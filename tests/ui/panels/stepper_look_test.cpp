@@ -4,11 +4,13 @@
 #include <QPushButton>
 #include <QSlider>
 #include <QTabWidget>
+#include <iterator>
 
 #include <gtest/gtest.h>
 
 #include "tests/ui/support/picture_baseline.h"
 #include "tests/ui/support/stepper_window.h"
+#include "ui/models/study_model.h"
 
 namespace tiltmap::test {
 namespace {
@@ -56,15 +58,23 @@ TEST_F(StepperLookTest, TheViewLooksAsItDid) {
 
 TEST_F(StepperLookTest, ThePlotsLookAsTheyDid) {
   preferences.setTheme(ui::ThemeChoice::Dark);
+  open("stepper-start");
+  click("stepper-sweep");
+  ASSERT_TRUE(waitFor([this] { return stepper().start().sweep().has_value(); }));
   runByMouse();
-  QWidget* panel = window->docks().panel("stepper-plots");
   auto* tabs = find<QTabWidget>("stepper-tabs");
-  const char* const names[] = {"stepper-plots-convergence", "stepper-plots-pairs", "stepper-plots-residuals",
-                               "stepper-plots-iterations"};
-  for (int tab = 0; tab < 4; ++tab) {
+  const char* const names[] = {"convergence", "pairs", "residuals", "iterations", "headings", "slices"};
+  ASSERT_EQ(tabs->count(), static_cast<int>(std::size(names)));
+  for (int tab = 0; tab < tabs->count(); ++tab) {
     tabs->setCurrentIndex(tab);
     settle();
-    EXPECT_TRUE(looksLike(panel->grab().toImage().scaled(560, 240), names[tab]));
+    if (tab == 5) {
+      click("stepper-match-slices");
+      ASSERT_TRUE(waitFor([this] { return ui::StudyModel::of(stepper()).slices().has_value(); }));
+      settle();
+    }
+    const QImage picture = window->docks().panel("stepper-plots")->grab().toImage().scaled(560, 240);
+    EXPECT_TRUE(looksLike(picture, QString("stepper-plots-%1").arg(names[tab]).toUtf8().constData()));
   }
 }
 
