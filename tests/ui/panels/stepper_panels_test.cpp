@@ -67,6 +67,7 @@ TEST_F(StepperPanelsTest, KeysStepAndWrongOrdersDoNothing) {
   EXPECT_EQ(stepper().position(), 0);
   press(QKeySequence(Qt::Key_F8));
   ASSERT_TRUE(waitFor([&] { return stepper().count() == 1; }));
+  settle();
   press(QKeySequence("Shift+F8"));
   EXPECT_EQ(stepper().position(), 0);
   press(QKeySequence(Qt::Key_F9));
