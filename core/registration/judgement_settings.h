@@ -1,0 +1,36 @@
+// What a registered pair must show to be trusted. Every default stands here as a member initialiser, once.
+#pragma once
+
+#include "core/base/parameter.h"
+#include "core/geometry/pose.h"
+
+namespace tiltmap {
+
+// A figure within its `good` limit is no cause for doubt; beyond its `bad` one it condemns the pair.
+struct JudgementSettings {
+  // Of what both scans could see, the share that lies on each other, at least.
+  double fit_good = 0.75, fit_bad = 0.5;
+  // The share that stands where the other scan looked through, at most.
+  double through_good = 0.04, through_bad = 0.12;
+  // The share of the smaller scan's surfaces that lie on the other's, at least.
+  double overlap_good = 0.15, overlap_bad = 0.05;
+  // Deviation of the surfaces beyond what their own noise explains, at most.
+  double excess_good_m = 0.02, excess_bad_m = 0.05;
+  // Two deviations of the place and of the heading in the weakest direction, at most.
+  double weak_good_m = 0.03, weak_bad_m = 0.3;
+  double weak_good_rad = 0.3 * kDegree, weak_bad_rad = 3.0 * kDegree;
+  // How far the surfaces still pull the pose, at most; and only where it is so many deviations.
+  double pull_good_m = 0.015, pull_bad_m = 0.06;
+  double pull_good_rad = 0.15 * kDegree, pull_bad_rad = 0.6 * kDegree;
+  // How far the pose lies from where the registration started, at most: a cause for doubt, never more.
+  double moved_good_m = 4.0;
+  double moved_good_rad = 40.0 * kDegree;
+  // Calibration: the covariance of the pose is so many times the inverse of the registration's information.
+  double covariance_cells = 1.0;
+  double covariance_patches = 1.0;
+};
+
+// Descriptions, ranges and sources.
+const ParameterTable<JudgementSettings>& judgementParameters();
+
+}  // namespace tiltmap
