@@ -6,6 +6,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/text.h"
 #include "core/io/file_bytes.h"
+#include "core/io/pose_track.h"
 #include "core/io/text_cursor.h"
 
 namespace tiltmap {
@@ -66,17 +67,9 @@ Result<IndexedPoses> parsePosesTum(std::string_view bytes, const std::string& pa
                         "a pose needs 8 numbers, and there are " + std::to_string(words.size()));
     const auto index = wholeIndex(words[0]);
     if (!index) return refuseLine(path, number, printable(words[0]) + " is not the index of a scan");
-    std::array<double, 7> v{};
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      const auto value = parseReal(words[i + 1]);
-      if (!value || !std::isfinite(*value))
-        return refuseLine(path, number, printable(words[i + 1]) + " is not a finite number");
-      v[i] = *value;
-    }
-    const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
-    if (!(std::abs(rotation.norm() - 1.0) < 0.01))
-      return refuseLine(path, number, "the quaternion is not of length 1");
-    if (!poses.emplace(*index, Pose(rotation, Eigen::Vector3d(v[0], v[1], v[2]))).second)
+    const auto pose = parsePoseWords(std::span(words).subspan(1), "");
+    if (!pose) return refuseLine(path, number, pose.error().what);
+    if (!poses.emplace(*index, *pose).second)
       return refuseLine(path, number, "there is a second pose of scan " + std::to_string(*index),
                         "leave one pose for each scan");
   }

@@ -22,21 +22,6 @@ constexpr Rgb kChangedColour{255, 140, 0};
 const std::array<std::string, 9> kNames = {"range",     "median",    "planar-median", "changed", "normal",
                                            "incidence", "intensity", "code",          "residual"};
 
-// Between these lie all but a fiftieth of the values at either end; a little apart where all are alike.
-void chooseEnds(DepthImage& image) {
-  std::vector<float> values;
-  for (const float v : image.value)
-    if (std::isfinite(v)) values.push_back(v);
-  if (values.empty()) return;
-  image.low = static_cast<double>(quantileOf(values, 0.02));
-  image.high = static_cast<double>(quantileOf(values, 0.98));
-  if (image.isSigned()) {
-    image.high = largestShownResidual(image.median_residual_m);
-    image.low = -image.high;
-  }
-  if (!(image.high - image.low > 1e-6)) image.high = image.low + 1.0;
-}
-
 void fillRange(DepthImage& image, const RangeImage& source) {
   for (std::size_t cell = 0; cell < source.cells(); ++cell)
     if (source.hasPoint(cell)) image.value[cell] = source.range(cell);
@@ -214,9 +199,24 @@ Result<DepthImage> depthImageOf(const RangeImagePtr& source, const ScannerGeomet
       fillResiduals(image, residuals);
       break;
   }
-  chooseEnds(image);
+  chooseDepthEnds(image);
   if (quantity == DepthQuantity::Incidence) image.low = 0.0, image.high = 90.0;
   return image;
+}
+
+// Between these lie all but a fiftieth of the values at either end; a little apart where all are alike.
+void chooseDepthEnds(DepthImage& image) {
+  std::vector<float> values;
+  for (const float v : image.value)
+    if (std::isfinite(v)) values.push_back(v);
+  if (values.empty()) return;
+  image.low = static_cast<double>(quantileOf(values, 0.02));
+  image.high = static_cast<double>(quantileOf(values, 0.98));
+  if (image.isSigned()) {
+    image.high = largestShownResidual(image.median_residual_m);
+    image.low = -image.high;
+  }
+  if (!(image.high - image.low > 1e-6)) image.high = image.low + 1.0;
 }
 
 Rgb depthColour(double value, double low, double high) {

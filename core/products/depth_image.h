@@ -89,6 +89,10 @@ struct DepthImage {
 Result<DepthImage> depthImageOf(const RangeImagePtr& image, const ScannerGeometry& geometry,
                                 DepthQuantity quantity, const std::vector<float>& residuals = {});
 
+// Sets low and high so that most values lie between them: what depthImageOf() does, for an image whose values
+// come one after the other. Left alone where there are none.
+void chooseDepthEnds(DepthImage& image);
+
 // columns x rows pixels. Values outside low..high get the colour of the nearer end; `no_data` fills cells
 // without a value.
 RgbImage depthPicture(const DepthImage& image, double low, double high, Rgb no_data);

@@ -30,6 +30,10 @@ void prepareSocket(int socket) {
   setOption(socket, IPPROTO_TCP, TCP_NODELAY, 1);
   setOption(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
   setOption(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, kGiveUpMs);
+  // Of a connection that only listens, a cable that was pulled is noticed after about ten seconds.
+  setOption(socket, IPPROTO_TCP, TCP_KEEPIDLE, 5);
+  setOption(socket, IPPROTO_TCP, TCP_KEEPINTVL, 2);
+  setOption(socket, IPPROTO_TCP, TCP_KEEPCNT, 3);
 }
 
 // Milliseconds until the deadline, as poll() wants them: rounded up, at most a second.
@@ -48,7 +52,7 @@ Error connectError(int number, const std::string& where) {
       "check the instrument's supply, its address and the cable, and that this machine "
       "is in the same network (`ping`)";
   if (number == ECONNREFUSED)
-    return {"the instrument is there and refuses the connection", where,
+    return {"the machine is there and refuses the connection", where,
             "check the port; another program may have it, and after switching on it takes a while"};
   if (number == ETIMEDOUT) return {"nothing answers at that address", where, check};
   return {std::string("cannot connect: ") + std::strerror(number), where, check};
@@ -113,8 +117,8 @@ Result<std::unique_ptr<TcpChannel>> TcpChannel::connect(const TcpAddress& addres
   if (const int failed =
           getaddrinfo(address.host.c_str(), std::to_string(address.port).c_str(), &hints, &found);
       failed != 0)
-    return fail(std::string("the name of the instrument is not known: ") + gai_strerror(failed),
-                address.text(), "give its number, as 192.168.0.1");
+    return fail(std::string("that name is not known: ") + gai_strerror(failed), address.text(),
+                "give its number, as 192.168.0.1");
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> all(found, freeaddrinfo);
   int error = ETIMEDOUT;
   for (const addrinfo* each = found; each; each = each->ai_next) {
@@ -151,7 +155,7 @@ Result<std::size_t> TcpChannel::read(std::span<Byte> buffer, Instant deadline) {
     if (state_ != ChannelState::Open) return lost("");
     const ssize_t count = ::recv(socket_, buffer.data(), buffer.size(), 0);
     if (count > 0) return static_cast<std::size_t>(count);
-    if (count == 0) return lost(": the instrument has ended it");
+    if (count == 0) return lost(": the other side has ended it");
     if (errno != EAGAIN && errno != EINTR) return lost(std::string(": ") + std::strerror(errno));
     const int wait = waitFor(clock_, deadline);
     if (wait == 0) return 0;

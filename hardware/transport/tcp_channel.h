@@ -18,8 +18,8 @@ struct TcpAddress {
 Result<TcpAddress> parseTcpAddress(const std::string& text, int usual_port);
 
 // Plain bytes over TCP. Rates mean nothing here: setLine() is kept and does nothing. A connection that the
-// other side gave up is Lost; one whose cable was pulled is noticed when something is sent, or by who misses
-// the answers.
+// other side gave up is Lost; one whose cable was pulled is noticed when something is sent, by who misses the
+// answers, or after about ten seconds.
 class TcpChannel : public ByteChannel {
  public:
   // Waits for at most limit_s, real seconds, until the other side accepts. The clock must outlive it.

@@ -72,6 +72,22 @@ void DepthView::redraw() {
   update();
 }
 
+void DepthView::redrawRow(int row) {
+  if (!image_) return;
+  const QColor none = theme_.colours().no_data;
+  const auto [low, high] = range();
+  for (int column = 0; column < image_->columns; ++column) {
+    const float value = image_->value[image_->index(row, column)];
+    QRgb colour = none.rgb();
+    if (std::isfinite(value)) {
+      const Rgb c = depthColour(*image_, value, low, high);
+      colour = qRgb(c.r, c.g, c.b);
+    }
+    cells_.setPixel(image_->pixelOfColumn(column), image_->pixelOfRow(row), colour);
+  }
+  update();
+}
+
 QRectF DepthView::room() const {
   // Room for the axes' texts, of which two lines stand below.
   const QFontMetricsF metrics(font());

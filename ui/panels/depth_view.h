@@ -66,13 +66,17 @@ class DepthView : public QWidget {
   void keyPressEvent(QKeyEvent* event) override;
   void leaveEvent(QEvent* event) override;
 
- private:
   QRectF room() const;   // inside axes and colour bar
   QRectF whole() const;  // where the whole matrix would lie
+  const Theme& theme() const { return theme_; }
+  void redraw();  // the image's values or its range have changed
+  // The values of one row have changed, and nothing else.
+  void redrawRow(int row);
+
+ private:
   void paintAxes(QPainter& painter, const QRectF& seen, const QRectF& all) const;
   void paintBar(QPainter& painter, const QRectF& seen) const;
   void paintMark(QPainter& painter, const MatrixCell& cell, const QColor& colour) const;
-  void redraw();
   void changeWindow(DepthWindow window);
   void zoomAt(const QPointF& place, double factor);
 
