@@ -1,9 +1,10 @@
-// tiltmap link list|add|delete|disable|enable|accept|what-if P.tiltmap ...: what a person thinks of the pairs
-// that were registered.
+// tiltmap link list|judge|add|delete|disable|enable|accept|what-if P.tiltmap ...: what a person thinks of the
+// pairs that were registered.
 #include <cstdio>
 
 #include "app/cli/operation_runner.h"
 #include "core/base/text.h"
+#include "core/project/link_judgement.h"
 #include "core/project/link_quality.h"
 #include "core/project/link_what_if.h"
 
@@ -55,6 +56,51 @@ int listLinks(Context& context, const LinkWords& words) {
                   linkQualityName(judgement.quality).c_str(), linkStateName(link.state).c_str(),
                   linkOriginName(link.origin).c_str());
     text += line + link.stop_reason + "\n";
+  }
+  context.console.printJson({{"links", list}});
+  context.console.print(list.empty() ? "there are no links" : text);
+  return kDone;
+}
+
+nlohmann::json judgementJson(const PairJudgement& j) {
+  return {{"verdict", verdictName(j.verdict)},
+          {"reason", j.reason},
+          {"badness", j.badness},
+          {"overlap_fixed", j.overlap_fixed},
+          {"overlap_moving", j.overlap_moving},
+          {"fit", j.fit},
+          {"through", j.through},
+          {"residual_m", j.residual_m},
+          {"expected_m", j.expected_m},
+          {"excess_m", j.excess_m},
+          {"pull_m", j.pull_m},
+          {"moved_m", j.moved.translation_m},
+          {"moved_deg", j.moved.rotation_rad / kDegree},
+          {"deviation_m", {j.strength.right_m, j.strength.forward_m, j.strength.up_m}},
+          {"deviation_deg",
+           {j.strength.pitch_rad / kDegree, j.strength.roll_rad / kDegree, j.strength.heading_rad / kDegree}},
+          {"strength", j.strength_sentence}};
+}
+
+int judgeLinksByScans(Context& context, const LinkWords& words) {
+  const auto snapshot = readProject(words.project);
+  if (!snapshot) return context.console.failed(snapshot.error());
+  const auto judged = judgeLinkScans(**snapshot);
+  if (!judged) return context.console.failed(judged.error());
+  nlohmann::json list = nlohmann::json::array();
+  std::string text = "link  fixed  moving  overlap    fit  verdict   why\n";
+  for (const JudgedLink& one : *judged) {
+    const Link& link = *(*snapshot)->findLink(one.link);
+    const std::size_t fixed = (*snapshot)->indexOf(link.fixed).value();
+    const std::size_t moving = (*snapshot)->indexOf(link.moving).value();
+    nlohmann::json entry = judgementJson(one.judgement);
+    entry["id"] = link.id, entry["fixed"] = fixed, entry["moving"] = moving;
+    list.push_back(std::move(entry));
+    char line[80];
+    std::snprintf(line, sizeof line, "%4lld  %5zu  %6zu  %5.0f %%  %3.0f %%  %-8s  ",
+                  static_cast<long long>(link.id), fixed, moving, 100.0 * one.judgement.overlap(),
+                  100.0 * one.judgement.fit, verdictName(one.judgement.verdict).c_str());
+    text += line + one.judgement.reason + "\n";
   }
   context.console.printJson({{"links", list}});
   context.console.print(list.empty() ? "there are no links" : text);
@@ -153,14 +199,20 @@ void addAdd(CLI::App& parent, Chosen& chosen) {
 }  // namespace
 
 void addLink(CLI::App& app, Chosen& chosen) {
-  auto* parent =
-      app.add_subcommand("link", "Links between scans: list, add, delete, disable, enable, accept, what-if");
+  auto* parent = app.add_subcommand(
+      "link", "Links between scans: list, judge, add, delete, disable, enable, accept, what-if");
   parent->require_subcommand(1);
   auto words = std::make_shared<LinkWords>();
   auto* list = parent->add_subcommand("list", "Which links there are");
   list->add_option("project", words->project, "The project")->required();
   list->callback([words, &chosen] {
     chosen.body = [words](Context& context) -> int { return listLinks(context, *words); };
+  });
+  auto* judge =
+      parent->add_subcommand("judge", "Whether each link can be trusted, by its two scans, and why");
+  judge->add_option("project", words->project, "The project")->required();
+  judge->callback([words, &chosen] {
+    chosen.body = [words](Context& context) -> int { return judgeLinksByScans(context, *words); };
   });
   using MakeEdit = Result<ProjectEdit> (*)(const Link&);
   const auto add = [&](const char* name, const char* help, MakeEdit make) {

@@ -24,7 +24,7 @@ struct StopVerdictSettings {
   ScanHealthSettings health;
   int neighbours = 3;       // stops that the scan is registered to, the previous one first
   double within_m = 40.0;   // and how far away they may be
-  double most_ms = 350.0;   // once these have passed nothing further is tried
+  double most_ms = 250.0;   // once these have passed nothing further is tried
   double surprise_m = 1.0;  // an odometry that is further off is told
   double surprise_rad = 15.0 * kDegree;
 };

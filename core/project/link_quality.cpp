@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/base/text.h"
+#include "core/registration/pose_strength.h"
 
 namespace tiltmap {
 
@@ -17,7 +18,14 @@ struct Figure {
 // Figures as people compare them; the one that is furthest beyond its limit decides.
 Figure worstOf(const Link& link, const PoseDifference& off, const LinkQualityLimits& limits) {
   const auto mm = [](double metres) { return fixedReal(1000.0 * metres, 0) + " mm"; };
-  std::array<Figure, 4> figures = {
+  const JudgementSettings& judged = limits.judgement;
+  const PoseStrength strength = strengthOf(link.information.value_or(Matrix6d::Zero()),
+                                           link.fixed_from_moving, judged.covariance_cells);
+  const double weak = std::max(2.0 * strength.weakest_m / judged.weak_good_m,
+                               2.0 * strength.weakest_rad / judged.weak_good_rad);
+  std::array<Figure, 5> figures = {
+      Figure{link.information ? weak : 0.0,
+             "the pose " + strengthSentence(strength, judged.weak_good_m, judged.weak_good_rad)},
       Figure{limits.overlap / std::max(link.overlap, 1e-3),
              "overlap " + fixedReal(100.0 * link.overlap, 0) + " %: they see little in common"},
       Figure{link.rms_m / limits.rms_m, "residual " + mm(link.rms_m) + ": the surfaces do not fit well"},

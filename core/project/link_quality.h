@@ -1,10 +1,12 @@
-// How far a link can be trusted, by stated limits.
+// How far a link can be trusted by what is stored of it, without reading its scans (link_judgement.h does
+// that).
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "core/project/project_snapshot.h"
+#include "core/registration/judgement_settings.h"
 
 namespace tiltmap {
 
@@ -18,6 +20,7 @@ struct LinkQualityLimits {
   double rms_m = 0.05;             // at most
   double off_m = 0.05;             // from where the stage puts the two scans, at most
   double off_rad = 0.3 * kDegree;  // likewise
+  JudgementSettings judgement;     // of weak directions, as pairs are judged by their scans
 };
 
 struct LinkJudgement {

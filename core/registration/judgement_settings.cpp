@@ -19,6 +19,10 @@ const ParameterTable<JudgementSettings>& judgementParameters() {
     t.real("overlap-good", &S::overlap_good, "", 0.0, 1.0,
            "Share of one scan's surfaces that lie on the other's: less is doubted.", tuned);
     t.real("overlap-bad", &S::overlap_bad, "", 0.0, 1.0, "Less than this condemns the pair.", tuned);
+    t.real("residual-good", &S::residual_good, "", 0.0, 1000.0,
+           "Median distance of the surfaces that fit over what their noise makes of it: more is doubted.",
+           tuned);
+    t.real("residual-bad", &S::residual_bad, "", 0.0, 1000.0, "More than this condemns the pair.", tuned);
     t.real("excess-good", &S::excess_good_m, "mm", 0.0, 1000.0,
            "Deviation of the surfaces beyond what their noise explains: more is doubted.",
            "ours: real outdoor surfaces show up to 20 mm", 0.001);

@@ -9,11 +9,13 @@ namespace tiltmap {
 // A figure within its `good` limit is no cause for doubt; beyond its `bad` one it condemns the pair.
 struct JudgementSettings {
   // Of what both scans could see, the share that lies on each other, at least.
-  double fit_good = 0.75, fit_bad = 0.5;
+  double fit_good = 0.7, fit_bad = 0.5;
   // The share that stands where the other scan looked through, at most.
-  double through_good = 0.04, through_bad = 0.12;
+  double through_good = 0.02, through_bad = 0.06;
   // The share of the smaller scan's surfaces that lie on the other's, at least.
   double overlap_good = 0.15, overlap_bad = 0.05;
+  // Their distance over what their own noise makes of it, medians, at most.
+  double residual_good = 2.5, residual_bad = 8.0;
   // Deviation of the surfaces beyond what their own noise explains, at most.
   double excess_good_m = 0.02, excess_bad_m = 0.05;
   // Two deviations of the place and of the heading in the weakest direction, at most.
@@ -26,7 +28,7 @@ struct JudgementSettings {
   double moved_good_m = 4.0;
   double moved_good_rad = 40.0 * kDegree;
   // Calibration: the covariance of the pose is so many times the inverse of the registration's information.
-  double covariance_cells = 1.0;
+  double covariance_cells = 1.05;
   double covariance_patches = 1.0;
 };
 

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include <Eigen/LU>
+
 #include "core/base/text.h"
 #include "core/registration/cell_refinement.h"
 #include "core/registration/pair_choice.h"
@@ -19,6 +21,8 @@ constexpr double kFitDeviations = 3.0;
 constexpr double kLeastExcess_m = 0.003;  // a fit is not asked to be better than surfaces are
 constexpr double kMostExcess_m = 0.015;   // nor excused by more
 constexpr double kGap_m = 0.5;            // patches further apart along their planes are not the same place
+// Surfaces that face the same way, less than this apart, are meant to be the same one.
+constexpr double kFacing_m = 0.5;
 // Nearer or further than its surroundings by less than this and a share of its range, a point is not apart.
 constexpr double kMargin_m = 0.2;
 constexpr double kMarginShare = 0.01;
@@ -100,21 +104,16 @@ Comparison compare(const JudgedScan& fixed, const JudgedScan& moving, const Pose
         found.fitting_variances.push_back(variance);
         continue;
       }
+      if (residual <= kFacing_m) {
+        ++side.misfits;
+        continue;
+      }
     }
+    // No surface to compare with: hidden, or of another thing, unless the other scan looked through it.
     const Eigen::Vector3d seen =
         pair.from_fixed ? back * q.position[pair.fixed] : pose * p.position[pair.moving];
     const double margin = kMargin_m + kMarginShare * seen.norm();
-    switch ((pair.from_fixed ? moving : fixed).seen.placeOf(seen, margin)) {
-      case SeenPlace::Through:
-        ++side.through;
-        break;
-      case SeenPlace::Near:
-        ++side.misfits;
-        break;
-      case SeenPlace::Unknown:
-      case SeenPlace::Behind:
-        break;
-    }
+    if ((pair.from_fixed ? moving : fixed).seen.placeOf(seen, margin) == SeenPlace::Through) ++side.through;
   }
   return found;
 }
@@ -123,16 +122,39 @@ double share(std::size_t part, std::size_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
 }
 
-// Information of the pose from the scans themselves; `cells` tells whether it is by cells.
-Matrix6d informationAt(const JudgedScan& fixed, const JudgedScan& moving, const Pose& pose,
-                       const Comparison& found, bool& by_cells) {
+// The information without the directions that the surfaces leave free: noisy normals let a plane look as if
+// it held a little.
+Matrix6d heldInformation(const LinearSystem& system, const Conditioning& condition) {
+  if (condition.weak == 0) return system.h;
+  Matrix6d held = Matrix6d::Zero();
+  if (condition.weak == 6) return held;
+  // Columns of `inverse`^T are the directions' duals: h = sum over k of value_k dual_k dual_k^T.
+  const Matrix6d inverse = condition.directions.inverse();
+  for (int k = condition.weak; k < 6; ++k) {
+    const Vector6d dual = inverse.row(k).transpose();
+    held += condition.eigenvalues[k] * system.plane_weight * dual * dual.transpose();
+  }
+  return held;
+}
+
+// What the scans themselves tell of the pose: its information, and the motion they still ask for. By cells
+// where there are any, which know best, else by patches.
+struct Hold {
+  Matrix6d information;
+  Vector6d pull;
+  bool by_cells = false;
+};
+
+Hold holdAt(const JudgedScan& fixed, const JudgedScan& moving, const Pose& pose, const Comparison& found) {
   const double excess = std::min(found.excess_m, kMostExcess_m);
   const auto cells = cellsOnPatches(*fixed.patches, *moving.patches, pose, excess, pairing());
-  by_cells = cells.size() >= kFewest;
-  if (!by_cells) return 0.5 * found.system.h;
+  // Both directions rest on the same surfaces: half of what they tell together.
+  if (cells.size() < kFewest)
+    return {0.5 * heldInformation(found.system, found.condition), solvedStep(found.system, found.condition)};
   LinearSystem system;
   lineariseCells(*fixed.patches, *moving.patches, pose, cells, excess, pairing().refine_deviations, system);
-  return system.h;
+  const Conditioning condition = conditioningOf(system, pairing().min_eigenvalue);
+  return {heldInformation(system, condition), solvedStep(system, condition), true};
 }
 
 struct Figure {
@@ -155,13 +177,16 @@ std::string percent(double share) {
 
 void decide(PairJudgement& j, const PairClaim& claim, const JudgementSettings& s) {
   const double doubt_only = 1.99;
-  std::array<Figure, 7> figures = {
+  std::array<Figure, 8> figures = {
       Figure{atLeast(j.overlap(), s.overlap_good, s.overlap_bad),
              "only " + percent(j.overlap()) + " of the surfaces are common to both scans"},
       Figure{atMost(j.through, s.through_good, s.through_bad),
              percent(j.through) + " of the surfaces stand where the other scan looked through free space"},
       Figure{atLeast(j.fit, s.fit_good, s.fit_bad),
              "of what both scans could see, only " + percent(j.fit) + " lies on the other"},
+      Figure{atMost(j.expected_m > 0.0 ? j.residual_m / j.expected_m : 0.0, s.residual_good, s.residual_bad),
+             "the surfaces that fit are " + lengthWords(j.residual_m) + " apart, their noise explains " +
+                 lengthWords(j.expected_m)},
       Figure{atMost(j.excess_m, s.excess_good_m, s.excess_bad_m),
              "the surfaces are " + lengthWords(j.excess_m) + " apart beyond their noise"},
       Figure{std::max(atMost(2.0 * j.strength.weakest_m, s.weak_good_m, s.weak_bad_m),
@@ -243,14 +268,15 @@ PairJudgement judgePair(const JudgedScan& fixed, const JudgedScan& moving, const
   j.residual_m = medianOf(found.fitting_residuals);
   j.expected_m = 0.6745 * std::sqrt(medianOf(found.fitting_variances));
 
-  bool by_cells = false;
-  Matrix6d information = informationAt(fixed, moving, claim.fixed_from_moving, found, by_cells);
-  j.strength = strengthOf(information, claim.fixed_from_moving,
-                          by_cells ? settings.covariance_cells : settings.covariance_patches);
-  const Vector6d step = solvedStep(found.system, found.condition);
-  const PoseDifference pull = difference(claim.fixed_from_moving, claim.fixed_from_moving.moved(step));
-  j.pull_m = pull.translation_m;
-  j.pull_rad = pull.rotation_rad;
+  const Hold hold = holdAt(fixed, moving, claim.fixed_from_moving, found);
+  j.strength = strengthOf(hold.information, claim.fixed_from_moving,
+                          hold.by_cells ? settings.covariance_cells : settings.covariance_patches, hold.pull);
+  // Cells only see near their surfaces: patches may still pull where they do not.
+  for (const Vector6d& step : {hold.pull, solvedStep(found.system, found.condition)}) {
+    const PoseDifference pull = difference(claim.fixed_from_moving, claim.fixed_from_moving.moved(step));
+    j.pull_m = std::max(j.pull_m, pull.translation_m);
+    j.pull_rad = std::max(j.pull_rad, pull.rotation_rad);
+  }
   return finish();
 }
 

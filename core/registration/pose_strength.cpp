@@ -24,13 +24,14 @@ std::string angleWords(double radians) {
 
 }  // namespace
 
-PoseStrength strengthOf(const Matrix6d& information, const Pose& fixed_from_moving, double factor) {
+PoseStrength strengthOf(const Matrix6d& information, const Pose& fixed_from_moving, double factor,
+                        const Vector6d& pull) {
   PoseStrength strength;
   Matrix6d held = information.allFinite() ? Matrix6d(information / factor) : Matrix6d(Matrix6d::Zero());
   // What is free stays finite.
   held.diagonal().head<3>().array() += 1.0 / (kFree_rad * kFree_rad);
   held.diagonal().tail<3>().array() += 1.0 / (kFree_m * kFree_m);
-  const Matrix6d covariance = held.ldlt().solve(Matrix6d::Identity());
+  const Matrix6d covariance = held.ldlt().solve(Matrix6d::Identity()) + pull * pull.transpose();
   // A small motion (w, v) of the fixed frame moves the scan at t by (w, v + w x t), seen from the scan.
   const Eigen::Matrix3d back = fixed_from_moving.rotation().transpose();
   const Eigen::Vector3d& t = fixed_from_moving.translation();

@@ -28,8 +28,10 @@ inline constexpr double kFree_rad = 1.0;
 
 // `information`: inverse covariance of the small motion of Pose::moved in the fixed frame (rotation first,
 // rad^-2 and m^-2), as a registration gives it; `factor` multiplies the covariance. All zero: everything is
-// free.
-PoseStrength strengthOf(const Matrix6d& information, const Pose& fixed_from_moving, double factor = 1.0);
+// free. `pull`: a small motion of the same kind that the surfaces still ask for; the pose is at least so far
+// off, so its square counts as well.
+PoseStrength strengthOf(const Matrix6d& information, const Pose& fixed_from_moving, double factor = 1.0,
+                        const Vector6d& pull = Vector6d::Zero());
 
 // In a sentence, with two deviations: "held everywhere: forward within 4 mm, heading within 0.01 deg" or "can
 // slide 12 cm along 30 deg left of ahead" where the weakest direction is worse than the bounds.

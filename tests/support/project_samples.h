@@ -91,7 +91,7 @@ inline Link sampleLink(ScanId fixed, ScanId moving, std::uint64_t seed = 1) {
   link.milliseconds = 98.5;
   link.stop_reason = "converged";
   link.succeeded = true;
-  link.information = Matrix6d::Identity() * static_cast<double>(seed);
+  link.information = Matrix6d::Identity() * (1e7 * static_cast<double>(seed));
   (*link.information)(0, 5) = (*link.information)(5, 0) = 0.25;
   return link;
 }

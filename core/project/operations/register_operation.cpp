@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/project/operations/pair_links.h"
 #include "core/project/operations/pair_list.h"
+#include "core/registration/pair_judgement.h"
 #include "core/registration/register_pair.h"
 
 namespace tiltmap {
@@ -54,6 +55,12 @@ class Counter {
   std::atomic<std::size_t> done_ = 0;
 };
 
+// A pair as it came out, and whether it can be trusted.
+struct JudgedPair {
+  PairResult result;
+  PairJudgement judgement;
+};
+
 using PreparedByIndex = std::map<int, Result<PreparedScanPtr>>;
 
 // Each scan that a pair names, prepared once and shared; one matrix a thread in memory.
@@ -81,7 +88,8 @@ Result<PreparedByIndex> prepareScans(const ProjectSnapshot& snapshot, const std:
   return prepared;
 }
 
-nlohmann::json pairJson(const IndexPair& pair, const PairResult& result, double milliseconds) {
+nlohmann::json pairJson(const IndexPair& pair, const JudgedPair& judged, double milliseconds) {
+  const PairResult& result = judged.result;
   const Eigen::Vector3d& t = result.fixed_from_moving.translation();
   const Eigen::Quaterniond& q = result.fixed_from_moving.quaternion();
   return {{"fixed", pair.first},
@@ -94,6 +102,8 @@ nlohmann::json pairJson(const IndexPair& pair, const PairResult& result, double 
           {"agreement", result.agreement},
           {"stop_reason", stopReasonName(result.stop_reason)},
           {"succeeded", result.succeeded()},
+          {"verdict", verdictName(judged.judgement.verdict)},
+          {"verdict_reason", judged.judgement.reason},
           {"fixed_from_moving",
            {{"translation_m", {t.x(), t.y(), t.z()}}, {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}}}};
 }
@@ -127,13 +137,18 @@ class RegisterOperation : public SettingsOperation<RegisterSettings> {
     auto prepared = prepareScans(*snapshot, *pairs, settings, counter, control);
     if (!prepared) return fail(prepared.error());
 
-    std::vector<Result<PairResult>> results(pairs->size(), PairResult());
+    std::vector<Result<JudgedPair>> results(pairs->size(), JudgedPair());
     parallelFor(pairs->size(), settings.threads, [&](std::size_t i) {
       const auto [fixed, moving] = (*pairs)[i];
       const Pose start = odometryStart(snapshot->scans()[static_cast<std::size_t>(fixed)],
                                        snapshot->scans()[static_cast<std::size_t>(moving)]);
-      results[i] =
-          registerPair(*prepared->at(fixed), *prepared->at(moving), start, settings.registration, control);
+      const PreparedScanPtr &at_fixed = *prepared->at(fixed), &at_moving = *prepared->at(moving);
+      results[i] = registerPair(at_fixed, at_moving, start, settings.registration, control)
+                       .map([&](PairResult result) {
+                         const PairClaim claim = claimOf(result, start);
+                         return JudgedPair{std::move(result),
+                                           judgePair(*judgedScan(at_fixed), *judgedScan(at_moving), claim)};
+                       });
       counter.finished("registered " + std::to_string(moving) + " to " + std::to_string(fixed));
     });
 
@@ -142,7 +157,7 @@ class RegisterOperation : public SettingsOperation<RegisterSettings> {
     nlohmann::json report = {{"pairs", nlohmann::json::array()}};
     for (std::size_t i = 0; i < pairs->size(); ++i) {
       if (!results[i]) return fail(results[i].error());
-      const PairResult& result = *results[i];
+      const PairResult& result = results[i]->result;
       const auto [fixed, moving] = (*pairs)[i];
       // Preparation is shared between pairs, but a pair's time counts from its two raw matrices.
       const double milliseconds =
@@ -150,11 +165,14 @@ class RegisterOperation : public SettingsOperation<RegisterSettings> {
       const ScanId fixed_id = snapshot->scans()[static_cast<std::size_t>(fixed)].id;
       const ScanId moving_id = snapshot->scans()[static_cast<std::size_t>(moving)].id;
       links.push_back(pairLink(fixed_id, moving_id, result, milliseconds));
-      report["pairs"].push_back(pairJson((*pairs)[i], result, milliseconds));
+      report["pairs"].push_back(pairJson((*pairs)[i], *results[i], milliseconds));
       if (!result.succeeded())
         outcome.warnings.push_back("scan " + std::to_string(moving) + " was not registered to scan " +
                                    std::to_string(fixed) + " (" + stopReasonName(result.stop_reason) +
                                    "): it keeps its odometry. " + stopReasonSentence(result.stop_reason));
+      else if (results[i]->judgement.verdict == Verdict::Bad)
+        outcome.warnings.push_back("scan " + std::to_string(moving) + " on scan " + std::to_string(fixed) +
+                                   " is not to be trusted: " + results[i]->judgement.reason);
     }
     report["milliseconds"] = millisecondsSince(started);
     outcome.report_json = report.dump();
