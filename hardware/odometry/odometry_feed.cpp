@@ -119,15 +119,14 @@ void OdometryFeed::Shared::receive(TcpChannel& channel) {
         std::span(buffer).first(*count), [&](std::string_view line) { takeLine(line, ++number); },
         [&] {
           refuse({"a line of more than " + std::to_string(kLongestLine) + " letters is no pose",
-                  address.text() + ", line " + std::to_string(++number),
-                  "send lines: stamp x y z qx qy qz qw"});
+                  "line " + std::to_string(++number), "send lines: stamp x y z qx qy qz qw"});
         });
   }
 }
 
 void OdometryFeed::Shared::takeLine(std::string_view line, std::size_t number) {
   if (isPoseComment(line)) return;
-  const auto pose = parseStampedPose(line, address.text() + ", line " + std::to_string(number));
+  const auto pose = parseStampedPose(line, "line " + std::to_string(number));
   if (!pose) {
     refuse(pose.error());
     return;
@@ -200,13 +199,12 @@ std::string feedText(const FeedStatus& status) {
                                 : "Receiving; the latest pose came " + seconds(status.age_s) + " ago.";
       break;
     case FeedState::Silent:
-      text = "Connected, but silent: no pose for " + seconds(status.age_s) +
-             ". Check that the vehicle's odometry is running and that it sends to this connection.";
+      text = "Silent: no pose for " + seconds(status.age_s) + ". Is the vehicle's odometry running?";
       break;
   }
   if (status.refused > 0 && status.line_error)
-    text += " Refused " + groupedInteger(static_cast<long long>(status.refused)) +
-            (status.refused == 1 ? " line" : " lines") + ", the last one: " + status.line_error->where +
+    text += " " + groupedInteger(static_cast<long long>(status.refused)) +
+            (status.refused == 1 ? " line" : " lines") + " refused; last: " + status.line_error->where +
             ": " + status.line_error->what + ".";
   return text;
 }

@@ -66,8 +66,7 @@ OdometryForm::OdometryForm(const Theme& theme, Preferences& preferences, QWidget
       if (each == &page()) refresh();
     });
   }
-  sentence_ = wrappedLabel(this, "odometry-sentence");
-  sentence_->setAccessibleName("The step in words");
+  sentence_ = new SentenceLabel(this, "odometry-sentence", "The step in words");
   layout->addWidget(sentence_);
   sketch_ = new StepSketch(theme, this);
   layout->addWidget(sketch_, 1);
@@ -131,7 +130,7 @@ void OdometryForm::stopCaptured() {
 void OdometryForm::refresh() {
   for (std::size_t k = 0; k < buttons_.size(); ++k)
     buttons_[k]->setChecked(k == static_cast<std::size_t>(mode_));
-  sentence_->setText(sentence());
+  sentence_->say(sentence());
   sketch_->setStep(lastFromNext(), first_);
   Q_EMIT changed();
 }

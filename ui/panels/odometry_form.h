@@ -7,13 +7,13 @@
 
 #include "core/geometry/pose.h"
 
-class QLabel;
 class QToolButton;
 
 namespace tiltmap::ui {
 
 class OdometryPage;
 class Preferences;
+class SentenceLabel;
 class StepSketch;
 class Theme;
 
@@ -58,7 +58,7 @@ class OdometryForm : public QWidget {
   std::array<OdometryPage*, 4> pages_{};
   std::array<QToolButton*, 4> buttons_{};
   StepSketch* sketch_ = nullptr;
-  QLabel* sentence_ = nullptr;
+  SentenceLabel* sentence_ = nullptr;
   Mode mode_ = Mode::Typed;
   bool first_ = false;
 };

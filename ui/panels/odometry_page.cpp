@@ -1,6 +1,7 @@
 #include "ui/panels/odometry_page.h"
 
 #include <QLineEdit>
+#include <QPainter>
 
 #include "ui/panels/controls.h"
 
@@ -15,6 +16,15 @@ class GloveButton : public QToolButton {
     return QToolButton::sizeHint().expandedTo({kGloveControl_px, kGloveControl_px});
   }
   QSize minimumSizeHint() const override { return sizeHint(); }
+
+ protected:
+  // Which one is on is seen on any ground.
+  void paintEvent(QPaintEvent* event) override {
+    QToolButton::paintEvent(event);
+    if (!isChecked()) return;
+    QPainter painter(this);
+    painter.fillRect(rect().adjusted(2, height() - 5, -2, -1), palette().color(QPalette::Link));
+  }
 };
 
 }  // namespace
@@ -33,6 +43,35 @@ QLineEdit* gloveField(QWidget* parent, const QString& name, const QString& acces
   describe(line, name, accessible, tip);
   line->setMinimumHeight(kGloveField_px);
   return line;
+}
+
+SentenceLabel::SentenceLabel(QWidget* parent, const QString& name, const QString& accessible)
+    : QLabel(parent) {
+  setObjectName(name);
+  setAccessibleName(accessible);
+  setWordWrap(true);
+  setTextInteractionFlags(Qt::TextSelectableByMouse);
+}
+
+void SentenceLabel::say(const QString& words) {
+  if (words == text()) return;
+  setText(words);
+  fit();
+}
+
+void SentenceLabel::resizeEvent(QResizeEvent* event) {
+  QLabel::resizeEvent(event);
+  fit();
+}
+
+void SentenceLabel::changeEvent(QEvent* event) {
+  QLabel::changeEvent(event);
+  if (event->type() == QEvent::FontChange) fit();
+}
+
+void SentenceLabel::fit() {
+  if (width() < kGloveControl_px) return;  // not laid out yet
+  setMinimumHeight(text().isEmpty() ? 0 : heightForWidth(width()));
 }
 
 }  // namespace tiltmap::ui

@@ -1,6 +1,7 @@
 // One way to tell the step to a new stop.
 #pragma once
 
+#include <QLabel>
 #include <QWidget>
 
 #include "core/base/result.h"
@@ -18,6 +19,21 @@ inline constexpr int kGloveField_px = 36;
 // At least kGloveControl_px wide and high, and never narrower than its text.
 QToolButton* gloveButton(QWidget* parent, const QString& name, const QString& text, const QString& tip);
 QLineEdit* gloveField(QWidget* parent, const QString& name, const QString& accessible, const QString& tip);
+
+// Words as long as they come: as high as they need at the width they get, which a wrapped label alone does
+// not insist on.
+class SentenceLabel : public QLabel {
+ public:
+  SentenceLabel(QWidget* parent, const QString& name, const QString& accessible);
+  void say(const QString& text);
+
+ protected:
+  void resizeEvent(QResizeEvent* event) override;
+  void changeEvent(QEvent* event) override;
+
+ private:
+  void fit();
+};
 
 class OdometryPage : public QWidget {
   Q_OBJECT

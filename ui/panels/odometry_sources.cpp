@@ -44,9 +44,8 @@ Pose scanFromBodyOf(const QComboBox* axes) {
 
 QString poseText(const StampedPose& pose) {
   const Eigen::Vector3d& t = pose.world_from_body.translation();
-  return QString("x %1  y %2  z %3 m at stamp %4")
-      .arg(qt(fixedReal(t.x(), 2)), qt(fixedReal(t.y(), 2)), qt(fixedReal(t.z(), 2)),
-           qt(fixedReal(pose.stamp_s, 2)));
+  return QString("x %1  y %2  z %3 m")
+      .arg(qt(fixedReal(t.x(), 2)), qt(fixedReal(t.y(), 2)), qt(fixedReal(t.z(), 2)));
 }
 
 }  // namespace
@@ -91,8 +90,7 @@ FileOdometryPage::FileOdometryPage(Preferences& preferences, QWidget* parent)
   steps->addWidget(later_, 1);
   steps->addWidget(again_);
   layout->addLayout(steps, 4, 0, 1, 2);
-  found_ = wrappedLabel(this, "odometry-file-found");
-  found_->setAccessibleName("What the file holds");
+  found_ = new SentenceLabel(this, "odometry-file-found", "What the file holds");
   layout->addWidget(found_, 5, 0, 1, 2);
 
   connect(path_, &QLineEdit::editingFinished, this, [this] {
@@ -202,7 +200,7 @@ void FileOdometryPage::refresh() {
             .arg(qt(shortestReal(track.at(0).stamp_s)), qt(shortestReal(track.at(track.size() - 1).stamp_s)));
     if (next) text += QString(" New stop: pose %1, %2.").arg(*next + 1).arg(poseText(track.at(*next)));
   }
-  found_->setText(text);
+  found_->say(text);
   found_->setVisible(!text.isEmpty());
   Q_EMIT changed();
 }
@@ -223,10 +221,8 @@ FeedOdometryPage::FeedOdometryPage(const Theme& theme, Preferences& preferences,
   connect_->setCheckable(true);
   connect_->setMinimumWidth(connect_->fontMetrics().horizontalAdvance("Disconnect") + 24);
   axes_ = axesChoice(this, "odometry-feed-axes", preferences, QString(kAxesKey) + "-feed");
-  state_ = wrappedLabel(this, "odometry-feed-state");
-  state_->setAccessibleName("State of the feed");
-  pose_ = wrappedLabel(this, "odometry-feed-pose");
-  pose_->setAccessibleName("Latest pose of the feed");
+  state_ = new SentenceLabel(this, "odometry-feed-state", "State of the feed");
+  pose_ = new SentenceLabel(this, "odometry-feed-pose", "Latest pose of the feed");
   take_ = gloveButton(this, "odometry-feed-take", "Take pose",
                       "The vehicle stands at the new stop: take the feed's latest pose");
   here_ = gloveButton(this, "odometry-feed-here", "Last stop here",
@@ -300,7 +296,7 @@ void FeedOdometryPage::connectOrNot(bool on) {
   refresh();
   if (!trouble.isEmpty()) {
     trouble[0] = trouble[0].toUpper();
-    state_->setText(trouble);
+    state_->say(trouble);
   }
   Q_EMIT changed();
 }
@@ -322,11 +318,11 @@ std::optional<FeedOdometryPage::Marked> FeedOdometryPage::now() const {
 
 Result<Pose> FeedOdometryPage::step() const {
   if (!last_)
-    return feed_ ? Result<Pose>(
-                       fail("the feed's pose at the last stop is not known", "",
-                            "while the vehicle still stands there press \"Last stop here\", else type "
-                            "the step"))
-                 : Result<Pose>(fail("no feed is connected", "", "give its address and connect"));
+    return feed_
+               ? Result<Pose>(fail("the feed's pose at the last stop is not known", "",
+                                   "while the vehicle still stands there press \"Last stop here\", else type "
+                                   "the step"))
+               : Result<Pose>(fail("no feed is connected", "", "give its address and connect"));
   if (!taken_)
     return fail("the pose of the new stop has not been taken", "",
                 "drive there, wait until the vehicle stands, and press \"Take pose\"");
@@ -352,16 +348,17 @@ void FeedOdometryPage::refresh() {
   const bool fresh = now().has_value();
   take_->setEnabled(fresh && !first_);
   here_->setEnabled(fresh && !first_);
-  state_->setText(status_ ? qt(feedText(*status_)) : QString("Not connected."));
+  state_->say(status_ ? qt(feedText(*status_)) : QString("Not connected."));
   QPalette colours = palette();
   const bool wrong =
       status_ && (status_->state == FeedState::Silent || status_->connection_error.has_value());
   if (wrong) colours.setColor(QPalette::WindowText, theme_.colours().error);
   state_->setPalette(colours);
   QString text;
-  if (status_ && status_->latest) text = "Latest: " + poseText(*status_->latest) + ".";
-  if (taken_) text += (text.isEmpty() ? "" : "\n") + QString("Taken: ") + poseText(taken_->pose) + ".";
-  pose_->setText(text);
+  if (status_ && status_->latest)
+    text = "Latest: " + poseText(*status_->latest) + ", stamp " + qt(fixedReal(status_->latest->stamp_s, 2));
+  if (taken_) text += (text.isEmpty() ? "" : "\n") + QString("Taken: ") + poseText(taken_->pose);
+  pose_->say(text);
   pose_->setVisible(!text.isEmpty());
 }
 

@@ -47,7 +47,8 @@ class FileOdometryPage : public OdometryPage {
   QLineEdit *path_, *last_, *next_;
   QComboBox* axes_;
   QToolButton *again_, *earlier_, *later_;
-  QLabel *last_label_, *found_;
+  QLabel* last_label_;
+  SentenceLabel* found_;
 };
 
 // The feed's pose at the last stop and the one that was taken at the new one.
@@ -86,7 +87,7 @@ class FeedOdometryPage : public OdometryPage {
   QLineEdit* where_;
   QComboBox* axes_;
   QToolButton *connect_, *take_, *here_;
-  QLabel *state_, *pose_;
+  SentenceLabel *state_, *pose_;
 };
 
 }  // namespace tiltmap::ui

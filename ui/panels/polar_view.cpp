@@ -110,9 +110,14 @@ double PolarView::lowest() const {
   return low < 0.02 ? 0.0 : low;
 }
 
+int PolarView::readoutLines() const {
+  // By the width alone: the picture must not jump with the words.
+  return width() < 56.0 * QFontMetricsF(font()).averageCharWidth() ? 2 : 1;
+}
+
 QRectF PolarView::room() const {
   const double line = QFontMetricsF(font()).height();
-  return QRectF(rect()).adjusted(kMargin_px, kMargin_px, -kMargin_px, -2.0 * line - 6.0);
+  return QRectF(rect()).adjusted(kMargin_px, kMargin_px, -kMargin_px, -(1.0 + readoutLines()) * line - 6.0);
 }
 
 QPointF PolarView::centre() const {
@@ -155,9 +160,9 @@ QString PolarView::readout() const {
   }
   std::array<int, 4> counts{};
   for (const CellCode code : codes_) ++counts[static_cast<std::size_t>(beamKind(code))];
-  QString text = QString("%1 of %2 beams with an echo").arg(counts[0]).arg(codes_.size());
-  if (counts[1] > 0) text += QString(" · %1 without ( | )").arg(counts[1]);
-  if (counts[2] > 0) text += QString(" · %1 dazzled or overflowing ( × )").arg(counts[2]);
+  QString text = QString("%1 of %2 echoes").arg(counts[0]).arg(codes_.size());
+  if (counts[1] > 0) text += QString(" · %1 none ( | )").arg(counts[1]);
+  if (counts[2] > 0) text += QString(" · %1 dazzled ( × )").arg(counts[2]);
   if (counts[3] > 0) text += QString(" · %1 left out").arg(counts[3]);
   return text;
 }
@@ -208,13 +213,15 @@ void PolarView::paintRings(QPainter& painter) const {
   const QFontMetricsF metrics(painter.font());
   painter.setPen(colours.muted);
   const double y = half ? middle.y() + 2.0 : middle.y() + 1.0;
-  const bool every = ring_m * scale() > metrics.horizontalAdvance("00 m") + 8.0;
+  const bool every = ring_m * scale() > metrics.horizontalAdvance("00") + 10.0;
   for (int k = 1; k <= rings; ++k) {
     if (!every && k != rings) continue;
     const double x = middle.x() + k * ring_m * scale();
-    const QString text = qt(shortestReal(k * ring_m)) + " m";
-    painter.drawText(QRectF(x - 60.0, y, 60.0 + (half ? 8.0 : -3.0), metrics.height()),
-                     Qt::AlignRight | Qt::AlignTop, text);
+    const QString text = qt(shortestReal(k * ring_m)) + (k == rings ? " m" : "");
+    const bool last = k == rings;
+    painter.drawText(
+        QRectF(x - (last ? 80.0 : 40.0), y, last ? 80.0 + (half ? 8.0 : -3.0) : 80.0, metrics.height()),
+        (last ? Qt::AlignRight : Qt::AlignHCenter) | Qt::AlignTop, text);
   }
 }
 
@@ -278,11 +285,10 @@ void PolarView::paintMark(QPainter& painter) const {
 }
 
 void PolarView::paintReadout(QPainter& painter) const {
-  const QFontMetricsF metrics(painter.font());
-  const QRectF below(8.0, height() - metrics.height() - 4.0, width() - 16.0, metrics.height());
+  const double high = readoutLines() * QFontMetricsF(painter.font()).height();
   painter.setPen(palette().color(QPalette::Text));
-  painter.drawText(below, Qt::AlignHCenter | Qt::AlignVCenter,
-                   metrics.elidedText(readout(), Qt::ElideRight, below.width()));
+  painter.drawText(QRectF(8.0, height() - high - 4.0, width() - 16.0, high),
+                   Qt::AlignHCenter | Qt::AlignVCenter | Qt::TextWordWrap, readout());
 }
 
 void PolarView::mark(std::optional<int> beam) {

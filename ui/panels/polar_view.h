@@ -66,6 +66,7 @@ class PolarView : public QWidget {
   double farthest() const;  // all but 2 % of the points
   void chooseRing(double farthest_m);
   double lowest() const;  // how far the beams reach below the scanner, as a share of the outer ring
+  int readoutLines() const;
   QRectF room() const;
   QPointF direction(int beam) const;  // on the screen
   bool isBeyond(int beam) const;

@@ -93,7 +93,7 @@ TEST(OdometryFeed, GarbageIsRefusedByNameAndHarmsNothing) {
     EXPECT_NE(status.line_error->where.find("line " + std::to_string(refused + 1)), std::string::npos)
         << status.line_error->where;
     EXPECT_EQ(status.latest->stamp_s, 1.0) << "what is refused is no pose";
-    EXPECT_NE(feedText(status).find("Refused"), std::string::npos);
+    EXPECT_NE(feedText(status).find("refused; last: line"), std::string::npos);
   }
   server.send(FeedServer::line(4, 6.0));
   EXPECT_EQ(afterPoses(feed, 2).latest->world_from_body.translation().x(), 6.0);
@@ -151,7 +151,7 @@ TEST(OdometryFeed, SilenceIsNoticed) {
   afterPoses(feed, 1);
   FeedStatus status = statusWhen(feed, [](const FeedStatus& s) { return s.state == FeedState::Silent; });
   EXPECT_FALSE(status.isFresh());
-  EXPECT_NE(feedText(status).find("silent"), std::string::npos) << feedText(status);
+  EXPECT_NE(feedText(status).find("Silent"), std::string::npos) << feedText(status);
   // What is no pose does not end it.
   server.send("hello\n");
   status = statusWhen(feed, [](const FeedStatus& s) { return s.refused == 1; });

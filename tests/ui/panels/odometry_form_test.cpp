@@ -348,6 +348,21 @@ TEST_F(OdometryFeedFormTest, AnOdometryBegunAnewIsNotBelieved) {
   EXPECT_TRUE(misses("begun anew"));
 }
 
+TEST_F(OdometryFeedFormTest, LongWordsAreNotCutOff) {
+  form->resize(240, 300);
+  connectToServer();
+  server.send(FeedServer::line(1, 123.0) + "1 2 nonsense-that-is-no-number 4 5 6 7 8\n");
+  ASSERT_TRUE(receives("123.00"));
+  auto* state = find<QLabel>("odometry-feed-state");
+  ASSERT_TRUE(waitUntil([&] { return state->text().indexOf("y: \"nonsense") > 0; }))
+      << state->text().toStdString();
+  QCoreApplication::processEvents();
+  for (const char* label : {"odometry-feed-state", "odometry-feed-pose", "odometry-sentence"}) {
+    auto* words = find<QLabel>(label);
+    EXPECT_GE(words->height(), words->heightForWidth(words->width())) << label;
+  }
+}
+
 TEST_F(OdometryFeedFormTest, AWrongAddressAndALostFeedAreSaid) {
   click("odometry-feed");
   type("odometry-feed-address", "rover");

@@ -119,8 +119,8 @@ TEST_F(PolarViewTest, BeamsWithoutAnEchoAndDazzledOnesLookDifferent) {
     EXPECT_NEAR(
         std::hypot(view.placeOf(beam).x() - view.centre().x(), view.placeOf(beam).y() - view.centre().y()),
         5.0 * view.scale(), 0.01);
-  EXPECT_NE(view.readout().indexOf("3 of 7 beams with an echo"), -1) << view.readout().toStdString();
-  EXPECT_NE(view.readout().indexOf("1 without"), -1);
+  EXPECT_NE(view.readout().indexOf("3 of 7 echoes"), -1) << view.readout().toStdString();
+  EXPECT_NE(view.readout().indexOf("1 none"), -1);
   EXPECT_NE(view.readout().indexOf("2 dazzled"), -1);
   EXPECT_NE(view.readout().indexOf("1 left out"), -1);
 }
