@@ -71,7 +71,8 @@ void SentenceLabel::changeEvent(QEvent* event) {
 
 void SentenceLabel::fit() {
   if (width() < kGloveControl_px) return;  // not laid out yet
-  setMinimumHeight(text().isEmpty() ? 0 : heightForWidth(width()));
+  setMinimumHeight(0);  // which heightForWidth() would not go below
+  if (!text().isEmpty()) setMinimumHeight(heightForWidth(width()));
 }
 
 }  // namespace tiltmap::ui

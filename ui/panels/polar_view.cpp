@@ -161,8 +161,8 @@ QString PolarView::readout() const {
   std::array<int, 4> counts{};
   for (const CellCode code : codes_) ++counts[static_cast<std::size_t>(beamKind(code))];
   QString text = QString("%1 of %2 echoes").arg(counts[0]).arg(codes_.size());
-  if (counts[1] > 0) text += QString(" · %1 none ( | )").arg(counts[1]);
-  if (counts[2] > 0) text += QString(" · %1 dazzled ( × )").arg(counts[2]);
+  if (counts[1] > 0) text += QString(" · %1 none\u00a0(|)").arg(counts[1]);
+  if (counts[2] > 0) text += QString(" · %1 dazzled\u00a0(×)").arg(counts[2]);
   if (counts[3] > 0) text += QString(" · %1 left out").arg(counts[3]);
   return text;
 }
@@ -216,6 +216,10 @@ void PolarView::paintRings(QPainter& painter) const {
   const bool every = ring_m * scale() > metrics.horizontalAdvance("00") + 10.0;
   for (int k = 1; k <= rings; ++k) {
     if (!every && k != rings) continue;
+    // The last one with its unit reaches to the left.
+    const double free =
+        ring_m * scale() - metrics.horizontalAdvance("00 m") - metrics.horizontalAdvance("00") / 2.0;
+    if (k == rings - 1 && free < 0.0) continue;
     const double x = middle.x() + k * ring_m * scale();
     const QString text = qt(shortestReal(k * ring_m)) + (k == rings ? " m" : "");
     const bool last = k == rings;

@@ -361,6 +361,11 @@ TEST_F(OdometryFeedFormTest, LongWordsAreNotCutOff) {
     auto* words = find<QLabel>(label);
     EXPECT_GE(words->height(), words->heightForWidth(words->width())) << label;
   }
+  // And they give the room back.
+  const int before = state->minimumHeight();
+  form->resize(900, 560);
+  QCoreApplication::processEvents();
+  EXPECT_LT(state->minimumHeight(), before);
 }
 
 TEST_F(OdometryFeedFormTest, AWrongAddressAndALostFeedAreSaid) {
