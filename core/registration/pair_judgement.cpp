@@ -9,6 +9,7 @@
 
 #include <Eigen/LU>
 
+#include "core/base/ranks.h"
 #include "core/base/text.h"
 #include "core/registration/cell_refinement.h"
 #include "core/registration/pair_choice.h"
