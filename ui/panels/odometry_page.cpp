@@ -1,5 +1,6 @@
 #include "ui/panels/odometry_page.h"
 
+#include <QEvent>
 #include <QLineEdit>
 #include <QPainter>
 
@@ -71,7 +72,7 @@ void SentenceLabel::changeEvent(QEvent* event) {
 
 void SentenceLabel::fit() {
   if (width() < kGloveControl_px) return;  // not laid out yet
-  setMinimumHeight(0);  // which heightForWidth() would not go below
+  setMinimumHeight(0);                     // which heightForWidth() would not go below
   if (!text().isEmpty()) setMinimumHeight(heightForWidth(width()));
 }
 
