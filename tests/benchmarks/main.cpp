@@ -18,13 +18,15 @@
 #include "tests/benchmarks/pair_run.h"
 #include "tests/benchmarks/pair_sets.h"
 #include "tests/benchmarks/program_run.h"
+#include "tests/benchmarks/verdict_run.h"
 #include "tests/benchmarks/window_run.h"
 
 namespace tiltmap::benchmarks {
 
 namespace {
 
-const std::vector<std::string> kBlocks = {"operations", "pairs", "real", "program", "capture", "window"};
+const std::vector<std::string> kBlocks = {"operations", "pairs",  "real",   "program",
+                                          "capture",    "window", "verdict"};
 
 struct Options {
   std::vector<std::string> blocks = kBlocks;
@@ -143,6 +145,10 @@ int measure(const Options& options, std::pair<int, int> seeds) {
     kept = addWindowRows(table, TILTMAP_WINDOW_BENCHMARK, options.program,
                          std::string(options.scratch) + "-window", tell) &&
            kept;
+  if (blocks.contains("verdict")) {
+    kept = addVerdictRows(table, seeds, tell) && kept;
+    kept = addStopRows(table, seeds, tell) && kept;
+  }
   table.heading.push_back("load      " + loadAverage() + " at the end");
   if (options.json)
     std::cout << table.json().dump(2) << '\n';
