@@ -1,10 +1,10 @@
 #include "ui/panels/slices_tab.h"
 
 #include <QDoubleSpinBox>
+#include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
-#include <QVBoxLayout>
 
 #include "ui/look/theme.h"
 #include "ui/models/study_model.h"
@@ -91,18 +91,23 @@ SlicesTab::SlicesTab(const PanelContext& context, QWidget* parent)
   text_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   auto* label = new QLabel("Hei&ght", this);
   label->setBuddy(height_);
-  auto* row = new QHBoxLayout;
-  row->setContentsMargins(8, 4, 8, 4);
-  row->setSpacing(8);
-  row->addWidget(label);
-  row->addWidget(height_);
-  row->addWidget(match_);
-  row->addWidget(text_, 1);
-  auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(0);
-  column->addLayout(row);
-  column->addWidget(new SlicePlot(context, this), 1);
+  // Beside the plot and not above it: the panel is low, and the plot needs what height there is.
+  auto* side = new QWidget(this);
+  side->setFixedWidth(30 * fontMetrics().averageCharWidth());
+  auto* controls = new QGridLayout(side);
+  controls->setContentsMargins(8, 8, 8, 4);
+  controls->setSpacing(6);
+  controls->addWidget(label, 0, 0);
+  controls->addWidget(height_, 0, 1);
+  controls->addWidget(match_, 1, 0, 1, 2);
+  controls->addWidget(text_, 2, 0, 1, 2, Qt::AlignTop);
+  controls->setColumnStretch(1, 1);
+  controls->setRowStretch(2, 1);
+  auto* row = new QHBoxLayout(this);
+  row->setContentsMargins(0, 0, 0, 0);
+  row->setSpacing(0);
+  row->addWidget(side);
+  row->addWidget(new SlicePlot(context, this), 1);
   connect(height_, qOverload<double>(&QDoubleSpinBox::valueChanged), &study_, &StudyModel::setSliceHeight);
   connect(match_, &QPushButton::clicked, &study_, &StudyModel::matchSlices);
   connect(&study_, &StudyModel::slicesChanged, this, &SlicesTab::refresh);
