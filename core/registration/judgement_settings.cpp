@@ -47,10 +47,10 @@ const ParameterTable<JudgementSettings>& judgementParameters() {
             "ours");
     t.real("covariance-cells", &S::covariance_cells, "", 0.01, 1000.0,
            "Covariance of a pose over the inverse of its information, where cells were held against patches.",
-           "ours: normalised error squared of simulated drives, seeds above 100");
+           "ours: normalised error squared of simulated drives, seeds 101 to 103, rounded up");
     t.real("covariance-patches", &S::covariance_patches, "", 0.01, 1000.0,
            "The same where patches were held against patches.",
-           "ours: normalised error squared of simulated drives, seeds above 100");
+           "ours: normalised error squared of simulated drives, seeds 101 to 103, rounded up");
     return t;
   }();
   return table;

@@ -13,13 +13,13 @@ struct JudgementSettings {
   // The share that stands where the other scan looked through, at most.
   double through_good = 0.02, through_bad = 0.06;
   // The share of the smaller scan's surfaces that lie on the other's, at least.
-  double overlap_good = 0.15, overlap_bad = 0.05;
+  double overlap_good = 0.1, overlap_bad = 0.05;
   // Their distance over what their own noise makes of it, medians, at most.
   double residual_good = 2.5, residual_bad = 8.0;
   // Deviation of the surfaces beyond what their own noise explains, at most.
   double excess_good_m = 0.02, excess_bad_m = 0.05;
   // Two deviations of the place and of the heading in the weakest direction, at most.
-  double weak_good_m = 0.03, weak_bad_m = 0.3;
+  double weak_good_m = 0.025, weak_bad_m = 0.3;
   double weak_good_rad = 0.3 * kDegree, weak_bad_rad = 3.0 * kDegree;
   // How far the surfaces still pull the pose, at most; and only where it is so many deviations.
   double pull_good_m = 0.015, pull_bad_m = 0.06;
@@ -28,7 +28,7 @@ struct JudgementSettings {
   double moved_good_m = 4.0;
   double moved_good_rad = 40.0 * kDegree;
   // Calibration: the covariance of the pose is so many times the inverse of the registration's information.
-  double covariance_cells = 1.05;
+  double covariance_cells = 1.1;
   double covariance_patches = 1.0;
 };
 

@@ -27,7 +27,8 @@ constexpr double kFacing_m = 0.5;
 // Nearer or further than its surroundings by less than this and a share of its range, a point is not apart.
 constexpr double kMargin_m = 0.2;
 constexpr double kMarginShare = 0.01;
-constexpr std::size_t kFewest = 12;  // as RegistrationSettings::min_pairs
+constexpr double kNoiseFactor = 1.4;  // times what noisy normals make of a plane is taken off
+constexpr std::size_t kFewest = 12;   // as RegistrationSettings::min_pairs
 
 // How the pairs of both directions are looked for: as the last steps of a registration.
 const RegistrationSettings& pairing() {
@@ -123,17 +124,19 @@ double share(std::size_t part, std::size_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
 }
 
-// The information without the directions that the surfaces leave free: noisy normals let a plane look as if
-// it held a little.
+// The information without what noisy normals make up: they let a plane look as if it held a little along
+// itself. Along each direction of the conditioning so much is taken off as a plane would seem to hold.
 Matrix6d heldInformation(const LinearSystem& system, const Conditioning& condition) {
-  if (condition.weak == 0) return system.h;
   Matrix6d held = Matrix6d::Zero();
-  if (condition.weak == 6) return held;
+  if (!(system.plane_weight > 0.0) || condition.weak == 6) return held;
+  const double made_up = kNoiseFactor * system.slope_noise / system.plane_weight;
   // Columns of `inverse`^T are the directions' duals: h = sum over k of value_k dual_k dual_k^T.
   const Matrix6d inverse = condition.directions.inverse();
-  for (int k = condition.weak; k < 6; ++k) {
+  for (int k = 0; k < 6; ++k) {
+    const double value = condition.eigenvalues[k] - made_up;
+    if (condition.eigenvalues[k] < pairing().min_eigenvalue || value <= 0.0) continue;
     const Vector6d dual = inverse.row(k).transpose();
-    held += condition.eigenvalues[k] * system.plane_weight * dual * dual.transpose();
+    held += value * system.plane_weight * dual * dual.transpose();
   }
   return held;
 }
