@@ -7,19 +7,6 @@ namespace tiltmap {
 
 namespace {
 
-// Carries a small motion on the right of the pose to the left of it: T Exp(xi) = Exp(Ad xi) T.
-Matrix6d adjoint(const Pose& pose) {
-  const Eigen::Matrix3d rotation = pose.rotation();
-  const Eigen::Vector3d& t = pose.translation();
-  Eigen::Matrix3d cross;
-  cross << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
-  Matrix6d ad = Matrix6d::Zero();
-  ad.topLeftCorner<3, 3>() = rotation;
-  ad.bottomLeftCorner<3, 3>() = cross * rotation;
-  ad.bottomRightCorner<3, 3>() = rotation;
-  return ad;
-}
-
 class Assembly {
  public:
   explicit Assembly(std::size_t unknowns)
@@ -63,6 +50,18 @@ void addTerm(const PairTerm& term, int fixed, int moving, Assembly& assembly) {
 }
 
 }  // namespace
+
+Matrix6d adjoint(const Pose& pose) {
+  const Eigen::Matrix3d rotation = pose.rotation();
+  const Eigen::Vector3d& t = pose.translation();
+  Eigen::Matrix3d cross;
+  cross << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
+  Matrix6d ad = Matrix6d::Zero();
+  ad.topLeftCorner<3, 3>() = rotation;
+  ad.bottomLeftCorner<3, 3>() = cross * rotation;
+  ad.bottomRightCorner<3, 3>() = rotation;
+  return ad;
+}
 
 PairTerm measuredPoseTerm(int fixed, int moving, const Pose& fixed_from_moving,
                           const Pose& measured_fixed_from_moving, const Matrix6d& information) {

@@ -19,6 +19,9 @@ struct PairTerm {
   Vector6d b = Vector6d::Zero();
 };
 
+// Carries a small motion on the right of the pose to the left of it: T Exp(xi) = Exp(Ad xi) T.
+Matrix6d adjoint(const Pose& pose);
+
 // The term of a relative pose measured with the given information: its minimum is at `measured`.
 PairTerm measuredPoseTerm(int fixed, int moving, const Pose& fixed_from_moving,
                           const Pose& measured_fixed_from_moving, const Matrix6d& information);

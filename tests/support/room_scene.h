@@ -30,8 +30,9 @@ inline std::vector<ScenePlane> groundScene() {
 }
 
 // What the default scanner at the pose sees: the first plane along each beam, up to 30 m, with normal noise.
+// The scan claims the default geometry; `really` is what its beams follow.
 inline Scan sceneScan(const std::vector<ScenePlane>& planes, const Pose& world_from_scan,
-                      double noise_m = 0.0, std::uint64_t seed = 1) {
+                      double noise_m = 0.0, std::uint64_t seed = 1, const ScannerGeometry& really = {}) {
   Scan scan;
   RangeImageData data;
   data.rows = scan.geometry.rows;
@@ -40,16 +41,16 @@ inline Scan sceneScan(const std::vector<ScenePlane>& planes, const Pose& world_f
   for (int row = 0; row < data.rows; ++row) {
     data.line_tilt_rad.push_back(scan.geometry.tiltOfRow(row));
     for (int column = 0; column < data.columns; ++column) {
-      const Eigen::Vector3d ray =
-          world_from_scan.quaternion() *
-          scan.geometry.direction(scan.geometry.tiltOfRow(row), scan.geometry.azimuthOfColumn(column));
+      const double tilt = scan.geometry.tiltOfRow(row), azimuth = scan.geometry.azimuthOfColumn(column);
+      const Eigen::Vector3d ray = world_from_scan.quaternion() * really.direction(tilt, azimuth);
+      const Eigen::Vector3d mirror = world_from_scan * really.point(tilt, azimuth, -really.range_offset_m);
       double range = std::numeric_limits<double>::infinity();
       for (const ScenePlane& plane : planes) {
         const double towards = plane.normal.dot(ray);
-        const double r = (plane.offset_m - plane.normal.dot(world_from_scan.translation())) / towards;
+        const double r = (plane.offset_m - plane.normal.dot(mirror)) / towards;
         if (std::abs(towards) > 1e-9 && r > 0.1 && r < range) range = r;
       }
-      if (range < 30.0) range += noise_m * random.normal();
+      if (range < 30.0) range += noise_m * random.normal() - really.range_offset_m;
       data.range_m.push_back(range < 30.0 ? static_cast<float>(range) : 0.0F);
       data.code.push_back(range < 30.0 ? cell_code::kMeasured : cell_code::kLmsOverflow);
     }

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/calibration/scanner_errors.h"
 #include "core/world/experiment.h"
 
 namespace tiltmap {
@@ -12,6 +13,7 @@ struct SimulateSettings {
   ExperimentId experiment = ExperimentId::Exp2Fixed;
   int seed = 1;
   int stops = 0;
+  std::string plant;
   int threads = 0;
 };
 
@@ -31,6 +33,10 @@ const ParameterTable<SimulateSettings>& simulateTable() {
               "Another seed, another site of the same kind", "ours");
     t.integer("stops", &SimulateSettings::stops, "", 0, 5000, "Number of stops, 0 for the experiment's own",
               "ours");
+    t.text("plant", &SimulateSettings::plant,
+           "Errors of the scanner that its scans know nothing of, for trying out the calibration, such as "
+           "tilt-zero=0.5,lever-arm-y=0.05,range-offset=0.03; degrees and metres",
+           "ours");
     t.integer("threads", &SimulateSettings::threads, "", 0, 256,
               "Threads to use, 0 for all cores; the result does not depend on it", "ours");
     return t;
@@ -57,13 +63,18 @@ class SimulateOperation : public SettingsOperation<SimulateSettings> {
             experimentPoses(settings.experiment, static_cast<std::uint64_t>(settings.seed), settings.stops);
         !poses)
       return fail(poses.error());
+    if (auto errors = parseScannerErrors(settings.plant, "--plant"); !errors) return fail(errors.error());
     return {};
   }
 
   Result<OperationResult> runSettings(const SnapshotPtr&, const SimulateSettings& settings,
                                       const JobControl& control) const override {
+    const auto planted = parseScannerErrors(settings.plant, "--plant");
+    if (!planted) return fail(planted.error());
+    SimulationSettings how;
+    if (!planted->isZero()) how.true_geometry = corrected(how.geometry, *planted);
     auto stops = simulateExperiment(settings.experiment, static_cast<std::uint64_t>(settings.seed),
-                                    settings.stops, settings.threads, control);
+                                    settings.stops, settings.threads, control, how);
     if (!stops) return fail(stops.error());
     OperationResult outcome;
     const std::string experiment(nameOf(settings.experiment));
