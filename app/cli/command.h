@@ -53,6 +53,8 @@ void addImport(CLI::App& app, Chosen& chosen);
 void addInfo(CLI::App& app, Chosen& chosen);
 void addRegister(CLI::App& app, Chosen& chosen);
 void addRelax(CLI::App& app, Chosen& chosen);
+void addBodyMask(CLI::App& app, Chosen& chosen);
+void addCalibrate(CLI::App& app, Chosen& chosen);
 void addPoses(CLI::App& app, Chosen& chosen);
 void addEvaluate(CLI::App& app, Chosen& chosen);
 void addExport(CLI::App& app, Chosen& chosen);

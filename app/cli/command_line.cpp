@@ -88,7 +88,7 @@ int run(int argc, char** argv) {
   app.footer("`tiltmap COMMAND --help` tells the rest.");
 
   Chosen chosen;
-  for (const auto add : {addNew, addSimulate, addCapture, addEmulate, addImport, addInfo, addRegister, addRelax, addPoses,
+  for (const auto add : {addNew, addSimulate, addCapture, addEmulate, addImport, addInfo, addRegister, addRelax, addCalibrate, addBodyMask, addPoses,
                          addEvaluate, addExport, addParameters, addHistory, addEdits, addPhoto, addLink,
                          addSite, addFiles, addDemo, addDevices, addScreenshot, addGui})
     add(app, chosen);

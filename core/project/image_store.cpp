@@ -30,6 +30,20 @@ std::optional<double> turnTilt(double way_rad) {
   return way_rad == 0.0 ? std::nullopt : std::optional(way_rad);
 }
 
+bool hasBounds(const ScannerGeometry& geometry) {
+  return geometry.minimum_range_m > 0.0 || geometry.maximum_range_m > 0.0;
+}
+
+void applyBounds(const ScannerGeometry& geometry, RangeImageData& data) {
+  if (!hasBounds(geometry)) return;
+  for (std::size_t cell = 0; cell < data.cells(); ++cell) {
+    const double range = static_cast<double>(data.range_m[cell]);
+    const bool inside = range >= geometry.minimum_range_m &&
+                        (geometry.maximum_range_m <= 0.0 || range <= geometry.maximum_range_m);
+    if (cell_code::hasPoint(data.code[cell]) && !inside) data.code[cell] = cell_code::kOutOfBounds;
+  }
+}
+
 std::size_t memoryOf(const RangeImage& image) {
   const RangeImageData& d = image.data();
   return d.range_m.size() * sizeof(float) + d.code.size() * sizeof(CellCode) +
@@ -45,7 +59,7 @@ ImageStore::ImageStore(const std::filesystem::path& path, std::size_t kept_bytes
 
 Result<RangeImagePtr> ImageStore::image(std::int64_t matrix, int lines, std::int64_t geometry_id,
                                         const ScannerGeometry& geometry) {
-  const MatrixKey key{matrix, lines, lines < geometry.rows ? geometry_id : 0};
+  const MatrixKey key{matrix, lines, lines < geometry.rows || hasBounds(geometry) ? geometry_id : 0};
   const std::lock_guard lock(mutex_);
   if (const auto found = known_.find(key); found != known_.end()) {
     if (RangeImagePtr image = found->second.lock()) {
@@ -162,6 +176,7 @@ RangeImagePtr ImageStore::load(std::int64_t matrix, int lines, const ScannerGeom
   if (found != lines)
     throw damaged(database, matrix, std::to_string(lines - found) + " of its lines are missing");
   setTurnTilts(data, turn_tilts);
+  applyBounds(geometry, data);
   auto image = RangeImage::make(std::move(data));
   if (!image) throw damaged(database, matrix, image.error().what);
   return *image;

@@ -14,18 +14,19 @@
 namespace tiltmap {
 
 // What names a stored matrix at a moment: a matrix under capture gains lines, and lines not yet taken stand
-// at their nominal tilt, which is the geometry's.
+// at their nominal tilt, which is the geometry's. So are the bounds of the range, where there are any.
 struct MatrixKey {
   std::int64_t matrix = 0;
   int lines = 0;
-  std::int64_t geometry = 0;  // 0 for a complete matrix
+  std::int64_t geometry = 0;  // 0 for a complete matrix without bounds
 
   auto operator<=>(const MatrixKey&) const = default;
 };
 
 // Shared by a project and its snapshots, on a connection of its own, so that a worker may load while the
 // writer writes. Any thread. A matrix stays in memory while somebody holds it, and the ones used last up to
-// kKeptBytes.
+// kKeptBytes. What is stored stays as it was measured: cells outside the geometry's bounds of the range are
+// handed out as cell_code::kOutOfBounds.
 class ImageStore {
  public:
   static constexpr std::size_t kKeptBytes = std::size_t{256} << 20;

@@ -1,6 +1,8 @@
 // The list of the program's operations. A new one is declared beside its maker and added here.
 #include "core/project/edit_operations.h"
 #include "core/project/operation.h"
+#include "core/project/operations/body_mask_operation.h"
+#include "core/project/operations/calibrate_operation.h"
 #include "core/project/operations/export_operation.h"
 #include "core/project/operations/import_operation.h"
 #include "core/project/operations/merge_operation.h"
@@ -21,6 +23,8 @@ OperationRegistry& registered() {
     all.add(makeRegisterOperation());
     all.add(makeLinkOperation());
     all.add(makeRelaxOperation());
+    all.add(makeCalibrateOperation());
+    all.add(makeBodyMaskOperation());
     all.add(makeExportOperation());
     all.add(makeRenameOperation());
     all.add(makeRebaseOperation());

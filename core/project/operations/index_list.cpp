@@ -1,5 +1,8 @@
 #include "core/project/operations/index_list.h"
 
+#include <algorithm>
+#include <numeric>
+
 #include "core/base/text.h"
 
 namespace tiltmap {
@@ -23,6 +26,17 @@ Result<std::vector<int>> parseIndexList(const std::string& text, int count, cons
     }
   }
   return list;
+}
+
+Result<std::vector<int>> parseIndexesOrAll(const std::string& text, int count, const std::string& where) {
+  if (!trimmed(text).empty()) {
+    auto list = parseIndexList(text, count, where);
+    if (list) std::ranges::sort(*list);
+    return list;
+  }
+  std::vector<int> all(static_cast<std::size_t>(count));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
 }
 
 }  // namespace tiltmap

@@ -12,4 +12,7 @@ namespace tiltmap {
 // part, what is no number or is not below count; `where` is the flag it came from.
 Result<std::vector<int>> parseIndexList(const std::string& text, int count, const std::string& where);
 
+// The same in ascending order; an empty text names all.
+Result<std::vector<int>> parseIndexesOrAll(const std::string& text, int count, const std::string& where);
+
 }  // namespace tiltmap

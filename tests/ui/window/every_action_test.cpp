@@ -245,6 +245,8 @@ std::vector<EveryAction::Row> EveryAction::rows() {
       {"op.import", registered, form("import")},
       {"op.register", registered, form("register")},
       {"op.relax", registered, form("relax")},
+      {"op.calibrate", registered, form("calibrate")},
+      {"op.body-mask", registered, form("body-mask")},
       {"op.export", registered, form("export")},
       {"op.rebase", registered, form("rebase")},
       {"op.merge", registered, form("merge")},
