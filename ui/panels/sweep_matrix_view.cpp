@@ -58,8 +58,8 @@ void SweepMatrixView::begin(int rows, int columns) {
 void SweepMatrixView::begin(DepthImage image) {
   if (image.rows < 1 || image.columns < 1) throw std::invalid_argument("a sweep has rows and columns");
   const auto cells = static_cast<std::size_t>(image.rows) * static_cast<std::size_t>(image.columns);
-  image.title = "Range";
-  image.unit = "m";
+  image.title = std::string("Range");
+  image.unit = std::string("m");
   image.low = 0.0;
   image.high = 10.0;  // until there are ranges
   image.value.assign(cells, kNothing);
