@@ -1,23 +1,11 @@
 #include "ui/panels/odometry_form.h"
 
-#include <QComboBox>
-#include <QLabel>
-#include <QLineEdit>
 #include <QSignalSpy>
-#include <QTest>
-#include <QToolButton>
-
-#include <gtest/gtest.h>
 
 #include "hardware/capture/capture_operation.h"
-#include "tests/support/feed_server.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/ui/support/odometry_form_fixture.h"
 #include "tests/ui/support/pixels.h"
-#include "tests/ui/support/wait_until.h"
 #include "tests/ui/support/widget_rules.h"
-#include "ui/look/theme.h"
-#include "ui/models/strings.h"
-#include "ui/panels/odometry_page.h"
 #include "ui/panels/odometry_sources.h"
 #include "ui/panels/step_sketch.h"
 
@@ -25,73 +13,6 @@ namespace tiltmap::test {
 namespace {
 
 using ui::OdometryForm;
-
-class OdometryFormTest : public ::testing::Test {
- protected:
-  OdometryFormTest() : preferences(ui::qt(folder / "settings.ini")), theme(preferences) {
-    preferences.setTheme(ui::ThemeChoice::Light);
-    form = std::make_unique<OdometryForm>(theme, preferences);
-    show();
-  }
-  void show() {
-    form->resize(340, 560);
-    form->show();
-    QApplication::setActiveWindow(form.get());
-    (void)QTest::qWaitForWindowExposed(form.get());
-    QCoreApplication::processEvents();
-  }
-  template <class Widget = QWidget>
-  Widget* find(const QString& name) {
-    auto* found = form->findChild<Widget*>(name);
-    if (!found) throw std::logic_error("there is no " + name.toStdString());
-    return found;
-  }
-  void click(const QString& name) {
-    auto* button = find<QAbstractButton>(name);
-    ASSERT_TRUE(button->isVisible()) << name.toStdString();
-    ASSERT_TRUE(button->isEnabled()) << name.toStdString();
-    QTest::mouseClick(button, Qt::LeftButton);
-    QCoreApplication::processEvents();
-  }
-  void type(const QString& name, const QString& text) {
-    auto* field = find<QLineEdit>(name);
-    ASSERT_TRUE(field->isVisible() && field->isEnabled()) << name.toStdString();
-    field->setFocus();
-    QTest::keyClick(field, Qt::Key_A, Qt::ControlModifier);
-    QTest::keyClick(field, Qt::Key_Delete);
-    QTest::keyClicks(field, text);
-    QCoreApplication::processEvents();
-  }
-  void choose(const QString& name, int index) {
-    auto* box = find<QComboBox>(name);
-    ASSERT_TRUE(box->isVisible() && box->isEnabled());
-    box->setFocus();
-    QTest::keyClick(box, index > box->currentIndex() ? Qt::Key_Down : Qt::Key_Up);
-    QCoreApplication::processEvents();
-    ASSERT_EQ(box->currentIndex(), index);
-  }
-  QString sentence() { return find<QLabel>("odometry-sentence")->text(); }
-  ::testing::AssertionResult tells(const Pose& step) {
-    const auto told = form->lastFromNext();
-    if (!told) return ::testing::AssertionFailure() << "no step: " << form->missing().toStdString();
-    const PoseDifference off = difference(*told, step);
-    if (off.translation_m < 1e-6 && off.rotation_rad < 1e-6) return ::testing::AssertionSuccess();
-    return ::testing::AssertionFailure() << "another step: " << form->sentence().toStdString();
-  }
-  ::testing::AssertionResult misses(const QString& what) {
-    if (form->lastFromNext())
-      return ::testing::AssertionFailure() << "a step: " << form->sentence().toStdString();
-    if (form->missing().indexOf(what) < 0 || form->missing() != sentence())
-      return ::testing::AssertionFailure()
-             << form->missing().toStdString() << " / " << sentence().toStdString();
-    return ::testing::AssertionSuccess();
-  }
-
-  TemporaryFolder folder;
-  ui::Preferences preferences;
-  ui::Theme theme;
-  std::unique_ptr<OdometryForm> form;
-};
 
 TEST_F(OdometryFormTest, TypedAsDistanceAndTurn) {
   EXPECT_TRUE(misses("distance is missing"));
@@ -252,135 +173,6 @@ TEST_F(OdometryFormTest, ABadFileSaysWhereAndWhat) {
   EXPECT_TRUE(misses("none.tum"));
   page->open(ui::qt(folder.write("one.tum", "0 0 0 0 0 0 0 1\n")));
   EXPECT_TRUE(misses("stamp of the last stop is missing"));
-}
-
-class OdometryFeedFormTest : public OdometryFormTest {
- protected:
-  void connectToServer() {
-    click("odometry-feed");
-    type("odometry-feed-address", ui::qt(server.address().text()));
-    click("odometry-feed-connect");
-  }
-  bool receives(const QString& x) {
-    return waitUntil([&] {
-      return find<QLabel>("odometry-feed-pose")->text().startsWith("Latest: x " + x) &&
-             find<QLabel>("odometry-feed-state")->text().startsWith("Receiving");
-    });
-  }
-  FeedServer server;
-};
-
-TEST_F(OdometryFeedFormTest, TheStepIsBetweenTwoPosesThatWereTaken) {
-  click("odometry-feed");
-  EXPECT_TRUE(misses("o feed is connected"));
-  EXPECT_FALSE(find("odometry-feed-take")->isEnabled());
-  connectToServer();
-  EXPECT_EQ(find<QToolButton>("odometry-feed-connect")->text(), "Disconnect");
-  EXPECT_TRUE(waitUntil([&] { return find<QLabel>("odometry-feed-state")->text().startsWith("Connected"); }));
-  EXPECT_FALSE(find("odometry-feed-take")->isEnabled()) << "there is no pose yet";
-  server.send(FeedServer::line(1, 5.0, 5.0));
-  ASSERT_TRUE(receives("5.00"));
-  EXPECT_TRUE(misses("pose at the last stop is not known"));
-  click("odometry-feed-here");
-  EXPECT_TRUE(misses("has not been taken"));
-  server.send("2 7 5 0 0 0 0.1305262 0.9914449\n");
-  ASSERT_TRUE(receives("7.00"));
-  EXPECT_TRUE(misses("has not been taken")) << "it is not taken by itself";
-  QSignalSpy changed(form.get(), &OdometryForm::changed);
-  click("odometry-feed-take");
-  EXPECT_GT(changed.count(), 0);
-  EXPECT_TRUE(tells(Pose::planar(0.0, 2.0, 15.0 * kDegree)));
-  EXPECT_EQ(sentence(), "2.00 m forward, turned 15° to the left");
-  // What comes later changes nothing, until it is taken or the stop is captured.
-  server.send(FeedServer::line(3, 9.0, 5.0));
-  ASSERT_TRUE(receives("9.00"));
-  EXPECT_TRUE(tells(Pose::planar(0.0, 2.0, 15.0 * kDegree)));
-  choose("odometry-feed-axes", 1);
-  EXPECT_TRUE(tells(Pose::planar(2.0, 0.0, 15.0 * kDegree)));
-  choose("odometry-feed-axes", 0);
-  form->stopCaptured();
-  EXPECT_TRUE(misses("has not been taken"));
-  server.send("4 9 5 0 0 0 0.1305262 0.9914449\n");
-  ASSERT_TRUE(
-      waitUntil([&] { return find<QLabel>("odometry-feed-pose")->text().indexOf("stamp 4.00") > 0; }));
-  click("odometry-feed-take");
-  // From (7, 5) looking 15 deg to the left.
-  EXPECT_TRUE(tells(Pose::planar(2.0 * std::sin(15.0 * kDegree), 2.0 * std::cos(15.0 * kDegree), 0.0)));
-  click("odometry-feed-connect");
-  EXPECT_TRUE(find<QLabel>("odometry-feed-state")->text().startsWith("Not connected"));
-  EXPECT_FALSE(find("odometry-feed-take")->isEnabled());
-  EXPECT_TRUE(form->lastFromNext()) << "what was taken stays taken";
-}
-
-TEST_F(OdometryFeedFormTest, TheFirstStopsPoseIsKeptForTheSecond) {
-  form->setFirstStop(true);
-  connectToServer();
-  server.send(FeedServer::line(1, 1.0, 0.0));
-  ASSERT_TRUE(receives("1.00"));
-  EXPECT_FALSE(find("odometry-feed-take")->isEnabled());
-  form->stopCaptured();
-  form->setFirstStop(false);
-  EXPECT_TRUE(misses("has not been taken"));
-  server.send(FeedServer::line(2, 4.0, 0.0));
-  ASSERT_TRUE(receives("4.00"));
-  click("odometry-feed-take");
-  EXPECT_TRUE(tells(Pose::planar(0.0, 3.0, 0.0)));
-}
-
-TEST_F(OdometryFeedFormTest, AnOdometryBegunAnewIsNotBelieved) {
-  connectToServer();
-  server.send(FeedServer::line(100, 1.0));
-  ASSERT_TRUE(receives("1.00"));
-  click("odometry-feed-here");
-  server.send(FeedServer::line(2, 3.0));
-  ASSERT_TRUE(receives("3.00"));
-  click("odometry-feed-take");
-  EXPECT_TRUE(misses("begun anew"));
-  // The same where it was begun anew while nobody was connected.
-  click("odometry-feed-here");
-  EXPECT_TRUE(misses("has not been taken"));
-  click("odometry-feed-connect");
-  server.hangUp();
-  click("odometry-feed-connect");
-  server.send(FeedServer::line(1, 5.0));
-  ASSERT_TRUE(receives("5.00"));
-  click("odometry-feed-take");
-  EXPECT_TRUE(misses("begun anew"));
-}
-
-TEST_F(OdometryFeedFormTest, LongWordsAreNotCutOff) {
-  form->resize(240, 300);
-  connectToServer();
-  server.send(FeedServer::line(1, 123.0) + "1 2 nonsense-that-is-no-number 4 5 6 7 8\n");
-  ASSERT_TRUE(receives("123.00"));
-  auto* state = find<QLabel>("odometry-feed-state");
-  ASSERT_TRUE(waitUntil([&] { return state->text().indexOf("y: \"nonsense") > 0; }))
-      << state->text().toStdString();
-  QCoreApplication::processEvents();
-  for (const char* label : {"odometry-feed-state", "odometry-feed-pose", "odometry-sentence"}) {
-    auto* words = find<QLabel>(label);
-    EXPECT_GE(words->height(), words->heightForWidth(words->width())) << label;
-  }
-  // And they give the room back.
-  const int before = state->minimumHeight();
-  form->resize(900, 560);
-  QCoreApplication::processEvents();
-  EXPECT_LT(state->minimumHeight(), before);
-}
-
-TEST_F(OdometryFeedFormTest, AWrongAddressAndALostFeedAreSaid) {
-  click("odometry-feed");
-  type("odometry-feed-address", "rover");
-  click("odometry-feed-connect");
-  EXPECT_FALSE(find<QToolButton>("odometry-feed-connect")->isChecked());
-  EXPECT_NE(find<QLabel>("odometry-feed-state")->text().indexOf("HOST:PORT"), -1);
-  int port = 0;
-  { port = FeedServer().address().port; }
-  type("odometry-feed-address", QString("127.0.0.1:%1").arg(port));
-  click("odometry-feed-connect");
-  EXPECT_TRUE(waitUntil([&] { return find<QLabel>("odometry-feed-state")->text().indexOf("refuses") > 0; }));
-  const FeedServer late(port);
-  EXPECT_TRUE(waitUntil([&] { return find<QLabel>("odometry-feed-state")->text().startsWith("Connected"); }));
 }
 
 TEST_F(OdometryFormTest, TheFirstStopNeedsNone) {
