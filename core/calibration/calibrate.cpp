@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/base/ranks.h"
 #include "core/base/text.h"
 #include "core/calibration/calibration_file.h"
 #include "core/calibration/calibration_system.h"

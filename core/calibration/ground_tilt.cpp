@@ -6,7 +6,7 @@
 #include <Eigen/Cholesky>
 
 #include "core/base/parallel.h"
-#include "core/registration/loss_scale.h"
+#include "core/base/ranks.h"
 #include "core/registration/metric.h"
 
 namespace tiltmap {
