@@ -148,7 +148,8 @@ TEST(Calibrate, FindsPlantedErrorsOnTheSimulatedSite) {
 
 // Open ground alone tells nothing of ranges along it.
 TEST(Calibrate, WhatScansDoNotTellIsSaidAndLeftAlone) {
-  const Survey survey = room(planted(), 0.005, test_support::groundScene());
+  Survey survey = room(planted(), 0.005, test_support::groundScene());
+  survey.scans.resize(4), survey.truth.resize(4);
   const auto found = calibrate(survey.scans, survey.truth, CalibrationSettings(), 2);
   if (!found) {
     EXPECT_NE(found.error().what.find("overlap"), std::string::npos) << found.error().what;
