@@ -140,7 +140,7 @@ QString StudyModel::sliceSentence() const {
                : QString(
                      "Match a horizontal slice of both scans in the plane, as thesis 4.1 tells of, "
                      "and see what it misses.");
-  QString text = QString("%1 and %2 points; %3 after %4 iterations.")
+  QString text = QString("%1 and %2 points, %3 after %4 steps.")
                      .arg(counted(slices_->fixed.size()), counted(slices_->moving.size()),
                           QString::fromStdString(stopReasonName(slices_->stop_reason)))
                      .arg(slices_->steps.size());
@@ -148,9 +148,7 @@ QString StudyModel::sliceSentence() const {
     return text + " " + QString::fromStdString(stopReasonSentence(slices_->stop_reason));
   const auto c = comparison();
   if (!c) return text + " Run the whole scans to compare.";
-  return text + QString(
-                    " Against the whole scans it lies %1 and %2° off; it cannot tell their %3 of height and "
-                    "%4° of tilt.")
+  return text + QString(" %1 and %2° off the whole scans; blind to %3 of height and %4° of tilt.")
                     .arg(smallLengthText(c->shift_m, LengthUnit::Millimetre))
                     .arg(c->heading_rad / kDegree, 0, 'f', 2)
                     .arg(smallLengthText(std::abs(c->height_m), LengthUnit::Millimetre))

@@ -34,8 +34,8 @@ SlicePlot::SlicePlot(const PanelContext& context, QWidget* parent)
     : StepperPlot(context, "stepper-slices", "Slices of both scans from above", parent),
       study_(StudyModel::of(model_)),
       fixed_(addDots("fixed")),
-      by_scan_(addDots("moving, by whole scans")),
-      by_slice_(addDots("moving, by its slice")) {
+      by_scan_(addDots("by whole scans")),
+      by_slice_(addDots("by its slice")) {
   setToolTip(
       "The slices from above: the fixed one, and the moving one where its slice and where the whole scans "
       "put it");
