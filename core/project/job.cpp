@@ -197,18 +197,23 @@ bool Job::waitFor(std::chrono::milliseconds time) const {
 }
 
 bool Job::serve(Project& project) {
-  bool any = false;
-  while (true) {
+  // What comes meanwhile has been told and is served next time: who owns the project has other things to do.
+  std::size_t left = 0;
+  {
+    const std::lock_guard lock(state_->mutex);
+    left = state_->wishes.size();
+  }
+  const bool any = left > 0;
+  for (; left > 0; --left) {
     std::function<void(Project*)> what;
     {
       const std::lock_guard lock(state_->mutex);
-      if (state_->wishes.empty()) return any;
       what = std::move(state_->wishes.front());
       state_->wishes.pop_front();
     }
     what(&project);
-    any = true;
   }
+  return any;
 }
 
 const Result<OperationResult>& Job::result() const {

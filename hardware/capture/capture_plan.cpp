@@ -131,6 +131,43 @@ Result<CapturePlan> planCapture(const ProjectSnapshot& snapshot, const CaptureSe
   return plan;
 }
 
+std::string emulatedSource(CaptureDrive drive, int seed) {
+  return "emulated " + std::string(nameOf(experimentOf(drive))) + " seed " + std::to_string(seed);
+}
+
+Result<CapturePlan> planNextStop(const ProjectSnapshot& snapshot, const CaptureSettings& settings) {
+  CapturePlan plan;
+  plan.settings = settings;
+  const auto& scans = snapshot.scans();
+  const bool emulated = settings.emulate != CaptureDrive::None;
+  if (emulated) {
+    plan.drive_stops = defaultStops(experimentOf(settings.emulate));
+    plan.first_stop = static_cast<int>(scans.size());
+    const std::string source = emulatedSource(settings.emulate, settings.seed);
+    for (const ScanEntry& scan : scans)
+      if (scan.source != source)
+        return fail("the project has scans of another world than the emulated drive", scan.name,
+                    "capture into a new project");
+  }
+  if (settings.resume) {
+    const JobRecord* record = lastCapture(snapshot);
+    if (!record || scans.empty() || scans.back().lines >= scans.back().rows)
+      return fail("there is no interrupted scan to go on with", snapshot.path().string(),
+                  "capture the next stop");
+    CaptureSettings then;
+    if (Status status = captureTable().apply(record->values, then); !status) return fail(status.error());
+    plan.settings.mode = then.mode;
+    plan.unfinished = &scans.back();
+    if (emulated) --plan.first_stop;
+    return plan;
+  }
+  if (emulated && plan.first_stop >= plan.drive_stops)
+    return fail("the emulated drive ends here: all its " + std::to_string(plan.drive_stops) +
+                    " stops are in the project",
+                "", "connect to another drive and capture into a new project");
+  return plan;
+}
+
 Status checkCapture(const CaptureSettings& settings, const AskOperator& ask) {
   if (settings.baud != 9600 && settings.baud != 19200 && settings.baud != 38400 && settings.baud != 500000)
     return fail("the scanner has no rate of " + std::to_string(settings.baud) + " Bd", "capture --baud",

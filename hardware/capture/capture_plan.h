@@ -41,10 +41,17 @@ struct CapturePlan {
   const ScanEntry* unfinished = nullptr;  // of the snapshot
   int stops = 1;                          // with the unfinished one
   int first_stop = 0;                     // of an emulated drive
+  int drive_stops = 0;                    // of a whole emulated drive taken stop by stop; else 0
 };
 
 // Fails where nothing can be gone on with, and where an emulated drive would meet scans of another world.
 Result<CapturePlan> planCapture(const ProjectSnapshot& snapshot, const CaptureSettings& settings);
+// One stop, for who keeps instruments open: the next one of an emulated drive whose stops before it the
+// project has; with `resume` the one that was interrupted, with its own angles and mode and the instruments
+// given here.
+Result<CapturePlan> planNextStop(const ProjectSnapshot& snapshot, const CaptureSettings& settings);
+// What scans of an emulated drive say they come from.
+std::string emulatedSource(CaptureDrive drive, int seed);
 // Whether the words of it make sense together; `ask` as for makeCaptureOperation(). Opens nothing.
 Status checkCapture(const CaptureSettings& settings, const AskOperator& ask);
 

@@ -1,3 +1,5 @@
+#include <mutex>
+
 #include "hardware/capture/instruments.h"
 #include "hardware/capture/lms_scanner_unit.h"
 #include "hardware/cola/cola_scanner_unit.h"
@@ -135,24 +137,32 @@ class TerminalBench : public EmulatedBench {
           settings_, [this] { return openScanner(); }, *clock_, baud_);
     };
     instruments.open_tilt = [this]() -> Result<std::unique_ptr<TiltUnit>> {
-      auto channel = open(rig_->tiltPort(), tiltBaud(settings_));
+      auto channel = open(port(false), tiltBaud(settings_));
       if (!channel) return fail(channel.error());
       return tiltUnit(settings_, std::move(*channel), *clock_);
     };
     return instruments;
   }
   Status moveTo(int stop) override { return rig_->moveTo(stop); }
-  Status fault(const std::string& text) override { return rig_->fault(text); }
+  Status fault(const std::string& text) override {
+    const std::lock_guard lock(ports_mutex_);
+    return rig_->fault(text);
+  }
   void unplug() override {
-    (void)rig_->fault("unplug-scanner");
-    (void)rig_->fault("unplug-tilt");
+    (void)fault("unplug-scanner");
+    (void)fault("unplug-tilt");
   }
   EmulatedRig& rig() override { return rig_->rig(); }
 
  private:
+  // Another one after a plug was pulled.
+  std::string port(bool scanner) {
+    const std::lock_guard lock(ports_mutex_);
+    return scanner ? rig_->scannerPort() : rig_->tiltPort();
+  }
   Result<std::unique_ptr<ByteChannel>> openScanner() {
-    if (!settings_.scannerOverNetwork()) return open(rig_->scannerPort(), 9600);
-    const auto address = parseTcpAddress(rig_->scannerPort(), 0);
+    if (!settings_.scannerOverNetwork()) return open(port(true), 9600);
+    const auto address = parseTcpAddress(port(true), 0);
     if (!address) return fail(address.error());
     auto channel = TcpChannel::connect(*address, *clock_);
     if (!channel) return fail(channel.error());
@@ -165,6 +175,7 @@ class TerminalBench : public EmulatedBench {
   }
 
   std::unique_ptr<RealClock> clock_;
+  std::mutex ports_mutex_;  // faults may be ordered by another thread than the drivers'
   std::unique_ptr<TerminalRig> rig_;
   RigSettings settings_;
   int baud_ = 38400;

@@ -20,6 +20,12 @@ namespace tiltmap {
 Result<Instruments> namedInstruments(const std::string& scanner_url, const std::string& tilt_url,
                                      RealClock& clock, AskOperator ask);
 
+// The same of two recordings that were made together ("lms2xx:replay:FILE"), on one clock: every answer comes
+// when it came then. On a virtual clock each line finds the tilt where it found it then, however busy the
+// machine is.
+Result<Instruments> replayedInstruments(const std::string& scanner_url, const std::string& tilt_url,
+                                        Clock& clock);
+
 // A scanner at a network with the options of "lms1xx:HOST?...". The clock must outlive it.
 Result<std::unique_ptr<ColaScannerUnit>> colaUnit(const DeviceUrl& url, ColaScannerUnit::Opener opener,
                                                   Clock& clock);
@@ -45,6 +51,7 @@ class EmulatedBench {
   // Its drive knows where level is.
   virtual Instruments instruments() = 0;
   virtual Status moveTo(int stop) = 0;
+  // In real time by any thread.
   virtual Status fault(const std::string& text) = 0;
   // Pulls both plugs; opening an instrument finds it again.
   virtual void unplug() = 0;

@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "core/base/text.h"
+
 namespace tiltmap {
 
 using namespace lms2xx;
@@ -204,6 +206,24 @@ Result<std::optional<ScannerEvent>> LmsScannerUnit::poll() {
     return std::nullopt;
   }
   return beginning();
+}
+
+std::vector<InstrumentFact> LmsScannerUnit::facts() const {
+  const LmsReport& report = scanner_.report();
+  if (report.type.text.empty()) return {};
+  const UnitStatus& status = report.status;
+  // The window's sensors against the clean reference ones, which the unit itself judges.
+  std::string dirt;
+  for (const int value : status.pollution) dirt += (dirt.empty() ? "" : " ") + std::to_string(value);
+  const bool dirty = std::ranges::any_of(
+      report.warnings, [](const std::string& text) { return text.find("dirty") != std::string::npos; });
+  return {{"type", report.type.text},
+          {"firmware", status.version},
+          {"rate", std::to_string(report.baud) + " Bd"},
+          {"field of view", std::to_string(status.variant.angle_deg) + "\u00b0 by " +
+                                fixedReal(status.variant.resolution_cdeg / 100.0, 2) + "\u00b0"},
+          {"window", (dirty ? "dirty, wipe it (" : "clean (") + dirt + ")", dirty},
+          {"condition", status.defective ? "reports a defect" : "no defect reported", status.defective}};
 }
 
 Status LmsScannerUnit::release() {

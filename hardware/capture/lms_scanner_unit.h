@@ -33,6 +33,7 @@ class LmsScannerUnit : public ScannerUnit {
   Result<std::optional<ScannerEvent>> poll() override;
   Status release() override;
   std::vector<std::string> takeWarnings() override;
+  std::vector<InstrumentFact> facts() const override;
 
  private:
   Status receive();

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "core/geometry/pose.h"
 #include "hardware/capture/instruments.h"
@@ -8,6 +10,7 @@
 #include "hardware/tilt/epos_unit.h"
 #include "hardware/tilt/mip50_unit.h"
 #include "hardware/transport/channel_opener.h"
+#include "hardware/transport/replay_channel.h"
 
 namespace tiltmap {
 
@@ -93,30 +96,33 @@ Result<ScipSettings> scipSettings(const DeviceUrl& url) {
 }
 
 using ScannerOpener = std::function<Result<std::unique_ptr<ScannerUnit>>()>;
+// Opens a channel as often as it is asked; and what makes one for an instrument, whose rate is this where its
+// URL names none.
+using Channels = std::function<Result<std::unique_ptr<ByteChannel>>()>;
+using MakeChannels = std::function<Channels(const DeviceUrl& url, int baud)>;
 
-Result<ScannerOpener> scannerOpener(const DeviceUrl& url, RealClock& clock) {
+Result<ScannerOpener> scannerOpener(const DeviceUrl& url, Clock& clock, const MakeChannels& make) {
   if (url.scheme == "lms1xx") {
     const auto settings = colaSettings(url);
     if (!settings) return fail(settings.error());
-    return [channels = openerOf(url, kScannerBaud, clock), s = *settings,
+    return [channels = make(url, kScannerBaud), s = *settings,
             &clock]() -> Result<std::unique_ptr<ScannerUnit>> {
-      return std::make_unique<ColaScannerUnit>([channels] { return channels->open(); }, clock, s);
+      return std::make_unique<ColaScannerUnit>(channels, clock, s);
     };
   }
   if (url.scheme == "urg") {
     const auto settings = scipSettings(url);
     if (!settings) return fail(settings.error());
-    return [channels = openerOf(url, kUrgBaud, clock), s = *settings,
-            &clock]() -> Result<std::unique_ptr<ScannerUnit>> {
-      return std::make_unique<ScipScannerUnit>([channels] { return channels->open(); }, clock, s);
+    return [channels = make(url, kUrgBaud), s = *settings, &clock]() -> Result<std::unique_ptr<ScannerUnit>> {
+      return std::make_unique<ScipScannerUnit>(channels, clock, s);
     };
   }
   const auto settings = lmsSettings(url);
   if (!settings) return fail(settings.error());
-  return [channels = openerOf(url, kScannerBaud, clock), s = *settings,
-          &clock]() -> Result<std::unique_ptr<ScannerUnit>> {
-    return std::make_unique<LmsScannerUnit>([channels] { return channels->open(); }, clock, s);
-  };
+  return
+      [channels = make(url, kScannerBaud), s = *settings, &clock]() -> Result<std::unique_ptr<ScannerUnit>> {
+        return std::make_unique<LmsScannerUnit>(channels, clock, s);
+      };
 }
 
 struct TiltSettings {
@@ -176,8 +182,9 @@ Result<std::pair<TiltDrive, EposSettings>> eposSettings(const DeviceUrl& url) {
   return std::pair{common->drive, settings};
 }
 
-Result<std::function<Result<std::unique_ptr<TiltUnit>>()>> tiltOpener(const DeviceUrl& url, RealClock& clock,
-                                                                      AskOperator ask) {
+Result<std::function<Result<std::unique_ptr<TiltUnit>>()>> tiltOpener(const DeviceUrl& url, Clock& clock,
+                                                                      AskOperator ask,
+                                                                      const MakeChannels& make) {
   if (url.scheme == "manual") {
     if (!ask)
       return fail("there is nobody here to set the tilt by hand", url.text(),
@@ -190,17 +197,16 @@ Result<std::function<Result<std::unique_ptr<TiltUnit>>()>> tiltOpener(const Devi
   }
   if (url.scheme == "epos") {
     if (auto settings = eposSettings(url); !settings) return fail(settings.error());
-    return [url, opener = openerOf(url, kEposBaud, clock), &clock]() -> Result<std::unique_ptr<TiltUnit>> {
-      auto channel = opener->open();
+    return [url, open = make(url, kEposBaud), &clock]() -> Result<std::unique_ptr<TiltUnit>> {
+      auto channel = open();
       if (!channel) return fail(channel.error());
       return eposUnit(url, std::move(*channel), clock);
     };
   }
   auto settings = mip50Settings(url);
   if (!settings) return fail(settings.error());
-  return [opener = openerOf(url, kTiltBaud, clock), &clock,
-          s = *settings]() -> Result<std::unique_ptr<TiltUnit>> {
-    auto channel = opener->open();
+  return [open = make(url, kTiltBaud), &clock, s = *settings]() -> Result<std::unique_ptr<TiltUnit>> {
+    auto channel = open();
     if (!channel) return fail(channel.error());
     return std::make_unique<Mip50Unit>(std::move(*channel), clock, s.drive, s.table, s.axis);
   };
@@ -229,21 +235,56 @@ Result<std::unique_ptr<EposUnit>> eposUnit(const DeviceUrl& url, std::unique_ptr
   return std::make_unique<EposUnit>(std::move(channel), clock, settings->first, settings->second);
 }
 
-Result<Instruments> namedInstruments(const std::string& scanner_url, const std::string& tilt_url,
-                                     RealClock& clock, AskOperator ask) {
+namespace {
+
+Result<Instruments> instrumentsOf(const std::string& scanner_url, const std::string& tilt_url, Clock& clock,
+                                  AskOperator ask, const MakeChannels& make) {
   const auto scanner = parseDeviceUrl(scanner_url, scannerSchemes());
   if (!scanner) return fail(scanner.error());
   const auto tilt = parseDeviceUrl(tilt_url, tiltSchemes());
   if (!tilt) return fail(tilt.error());
-  auto open_scanner = scannerOpener(*scanner, clock);
+  auto open_scanner = scannerOpener(*scanner, clock, make);
   if (!open_scanner) return fail(open_scanner.error());
-  auto open_tilt = tiltOpener(*tilt, clock, std::move(ask));
+  auto open_tilt = tiltOpener(*tilt, clock, std::move(ask), make);
   if (!open_tilt) return fail(open_tilt.error());
   Instruments instruments;
   instruments.clock = &clock;
   instruments.open_scanner = std::move(*open_scanner);
   instruments.open_tilt = std::move(*open_tilt);
   return instruments;
+}
+
+}  // namespace
+
+Result<Instruments> namedInstruments(const std::string& scanner_url, const std::string& tilt_url,
+                                     RealClock& clock, AskOperator ask) {
+  return instrumentsOf(scanner_url, tilt_url, clock, std::move(ask),
+                       [&clock](const DeviceUrl& url, int baud) {
+                         return [opener = openerOf(url, baud, clock)] { return opener->open(); };
+                       });
+}
+
+Result<Instruments> replayedInstruments(const std::string& scanner_url, const std::string& tilt_url,
+                                        Clock& clock) {
+  std::map<std::string, WireSession> sessions;  // by URL
+  double begun_unix_s = 0.0;
+  for (const bool scanner : {true, false}) {
+    const auto url =
+        parseDeviceUrl(scanner ? scanner_url : tilt_url, scanner ? scannerSchemes() : tiltSchemes());
+    if (!url) return fail(url.error());
+    auto session = readSession(url->port.substr(url->port.find(':') + 1));
+    if (!session) return fail(session.error());
+    begun_unix_s = scanner ? session->begun_unix_s : std::min(begun_unix_s, session->begun_unix_s);
+    sessions[url->text()] = std::move(*session);
+  }
+  const Instant begun = clock.now();
+  return instrumentsOf(scanner_url, tilt_url, clock, {}, [&](const DeviceUrl& url, int) {
+    WireSession& session = sessions.at(url.text());
+    const Instant own = begun + durationOf(session.begun_unix_s - begun_unix_s);
+    const auto opener = std::make_shared<ReplayOpener>(std::move(session), clock);
+    opener->replayFrom(own);
+    return [opener] { return opener->open(); };
+  });
 }
 
 }  // namespace tiltmap

@@ -11,6 +11,7 @@
 #include "core/base/result.h"
 #include "core/scan/range_image.h"
 #include "hardware/transport/clock.h"
+#include "hardware/transport/instrument_fact.h"
 
 namespace tiltmap {
 
@@ -62,6 +63,8 @@ class ScannerUnit {
   virtual Status release() = 0;
   // What the operator should know, once each.
   virtual std::vector<std::string> takeWarnings() { return {}; }
+  // Identity and health as it told them when it was prepared.
+  virtual std::vector<InstrumentFact> facts() const { return {}; }
 };
 
 }  // namespace tiltmap

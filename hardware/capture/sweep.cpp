@@ -7,7 +7,7 @@
 
 namespace tiltmap {
 
-Sweep::Sweep(Instruments instruments, SweepSettings settings)
+Sweep::Sweep(Instruments instruments, SweepOptions settings)
     : instruments_(std::move(instruments)), settings_(settings) {
   if (!instruments_.clock || !instruments_.open_scanner || !instruments_.open_tilt)
     throw std::invalid_argument("Sweep: instruments are missing");
@@ -62,8 +62,30 @@ void Sweep::noteWarnings(std::vector<std::string>& warnings) {
   if (tilt_) add(tilt_->takeWarnings());
 }
 
-// The instruments are let go and found again until that works or patience ends. What was on its way is taken
-// anew.
+Status Sweep::findAgain(const Error& why, const JobControl& job, Instant since, double& pause_s,
+                        const std::function<Status()>& meanwhile) {
+  Clock& clock = *instruments_.clock;
+  Error last = why;
+  while (true) {
+    if (clock.now() - since > durationOf(settings_.patience_s)) return fail(last);
+    pause_s = pause_s == 0.0 ? settings_.first_pause_s : std::min(2.0 * pause_s, settings_.longest_pause_s);
+    job.tell(-1.0, last.what + "; trying again in " + fixedReal(pause_s, 0) + " s");
+    const Instant end = clock.now() + durationOf(pause_s);
+    while (clock.now() < end) {
+      if (job.stopRequested()) return fail(kCancelled, "capture", "");
+      if (meanwhile)
+        if (Status status = meanwhile(); !status) return status;
+      clock.sleepFor(durationOf(0.02));
+    }
+    scanner_.reset();
+    tilt_.reset();
+    const Status status = prepare(job);
+    if (status || status.error().what == kCancelled) return status;
+    last = status.error();
+  }
+}
+
+// What was on its way is taken anew.
 Status Sweep::recover(const Error& why, Run& run) {
   Clock& clock = *instruments_.clock;
   if (why.what == kCancelled) return fail(why);
@@ -74,38 +96,33 @@ Status Sweep::recover(const Error& why, Run& run) {
   run.standing.reset();
   run.line_end.reset();
   run.spoiled_in_a_row = 0;
-  Error last = why;
   if (!run.trouble_since) run.trouble_since = clock.now();
-  while (true) {
-    if (clock.now() - *run.trouble_since > durationOf(settings_.patience_s))
-      return fail(last.what, last.where,
-                  (last.remedy.empty() ? "" : last.remedy + "; ") + std::string(kResume));
-    run.pause_s =
-        run.pause_s == 0.0 ? settings_.first_pause_s : std::min(2.0 * run.pause_s, settings_.longest_pause_s);
-    run.job.tell(static_cast<double>(run.geometry.rows - run.left) / run.geometry.rows,
-                 last.what + "; trying again in " + fixedReal(run.pause_s, 0) + " s");
-    const Instant end = clock.now() + durationOf(run.pause_s);
-    while (clock.now() < end) {
-      if (run.job.stopRequested()) return fail(kCancelled, "capture", kResume);
-      if (Status status = run.settleStored(kUnstored); !status) return status;
-      clock.sleepFor(durationOf(0.02));
-    }
-    scanner_.reset();
-    tilt_.reset();
-    if (Status status = prepare(run.job); !status) {
-      if (status.error().what == kCancelled) return status;
-      last = status.error();
-      continue;
-    }
-    if (scanner_->columns() != run.geometry.columns)
-      return fail("the scanner now sends " + std::to_string(scanner_->columns()) +
-                      " values a line instead of " + std::to_string(run.geometry.columns),
-                  scanner_->name(), "plug in the one the scan was begun with");
-    ++run.report.recoveries;
-    run.aim = -1;
-    run.last_event = clock.now();
-    return {};
+  if (run.events.lost) run.events.lost(why);
+  JobControl telling = run.job;
+  telling.report = [&run](const Progress& progress) {
+    run.job.tell(static_cast<double>(run.geometry.rows - run.left) / run.geometry.rows, progress.message);
+  };
+  bool disk = false;
+  const Status found = findAgain(why, telling, *run.trouble_since, run.pause_s, [&] {
+    Status stored = run.settleStored(kUnstored);
+    disk = !stored;
+    return stored;
+  });
+  if (!found) {
+    const Error& last = found.error();
+    if (disk) return found;
+    return fail(last.what, last.where,
+                (last.remedy.empty() ? "" : last.remedy + "; ") + std::string(kResume));
   }
+  if (scanner_->columns() != run.geometry.columns)
+    return fail("the scanner now sends " + std::to_string(scanner_->columns()) +
+                    " values a line instead of " + std::to_string(run.geometry.columns),
+                scanner_->name(), "plug in the one the scan was begun with");
+  ++run.report.recoveries;
+  if (run.events.found) run.events.found(run.report.recoveries);
+  run.aim = -1;
+  run.last_event = clock.now();
+  return {};
 }
 
 namespace {
@@ -127,6 +144,7 @@ Status Sweep::aimAtNext(Run& run) {
 
 Status Sweep::spoiled(Run& run) {
   ++run.report.spoiled;
+  if (run.events.spoiled) run.events.spoiled(run.report.spoiled);
   if (++run.spoiled_in_a_row > kSpoiledInARow)
     return fail("nearly every line of the scanner arrives damaged", scanner_->name(),
                 "check the cable, its shield and the rate; a lower one may help (?baud=9600)");
@@ -150,6 +168,7 @@ Status Sweep::happened(Run& run, const ScannerEvent& event) {
   const auto& line = std::get<LineTaken>(event);
   if (!stoodStill(line.measured, coming.reading)) {
     ++run.report.spoiled;
+    if (run.events.spoiled) run.events.spoiled(run.report.spoiled);
     return {};
   }
   run.finished = clock.now();
@@ -185,7 +204,7 @@ Status Sweep::look(Run& run) {
 }
 
 Result<SweepReport> Sweep::run(const ScannerGeometry& geometry, std::vector<bool> taken, const Store& store,
-                               const JobControl& job) {
+                               const JobControl& job, const SweepEvents& events) {
   if (taken.size() != static_cast<std::size_t>(geometry.rows))
     throw std::invalid_argument("Sweep::run: one entry a row");
   Clock& clock = *instruments_.clock;
@@ -193,6 +212,7 @@ Result<SweepReport> Sweep::run(const ScannerGeometry& geometry, std::vector<bool
   Run run{.geometry = geometry,
           .store = store,
           .job = job,
+          .events = events,
           .taken = std::move(taken),
           .last_event = start,
           .finished = start};

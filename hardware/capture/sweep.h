@@ -20,7 +20,7 @@ struct Instruments {
   std::function<Result<std::unique_ptr<TiltUnit>>()> open_tilt;
 };
 
-struct SweepSettings {
+struct SweepOptions {
   // The tilt moves on at one speed and every beam gets the tilt of its own instant. Lines are stored once the
   // tilt has told that it ended when and where it should have: until then their angles are not certain.
   bool steady = false;
@@ -40,15 +40,28 @@ struct SweepReport {
   std::vector<std::string> warnings;
 };
 
+// What a sweep tells while it goes on, on its own thread; must return quickly. Each may be empty.
+struct SweepEvents {
+  // A line is about to be stored; `wished_rad` is where the tilt should have stood.
+  std::function<void(int row, double wished_rad, const ScanLine& line)> line;
+  std::function<void(int so_far)> spoiled;
+  std::function<void(const Error& why)> lost;  // an instrument failed and is being looked for
+  std::function<void(int so_far)> found;       // it is back
+};
+
 // Keeps the instruments between stops, so that home is searched once.
 class Sweep {
  public:
   using Store = std::function<std::future<Status>(int row, ScanLine line)>;
 
-  Sweep(Instruments instruments, SweepSettings settings);
+  Sweep(Instruments instruments, SweepOptions settings);
   ~Sweep();
   Sweep(const Sweep&) = delete;
   Sweep& operator=(const Sweep&) = delete;
+
+  const SweepOptions& settings() const { return settings_; }
+  // Between sweeps.
+  void setSettings(const SweepOptions& settings) { settings_ = settings; }
 
   // Scanner and tilt found and ready: what the geometry's columns and azimuths must be is known afterwards.
   Status prepare(const JobControl& job);
@@ -61,7 +74,16 @@ class Sweep {
   // successfully or not, every line handed to `store` has been stored or has failed to be. Cancelling stops
   // the tilt within 200 ms.
   Result<SweepReport> run(const ScannerGeometry& geometry, std::vector<bool> taken, const Store& store,
-                          const JobControl& job);
+                          const JobControl& job, const SweepEvents& events = {});
+  // The instruments between sweeps, for who moves the tilt and looks at lines himself; null while they are
+  // not open.
+  ScannerUnit* scanner() { return scanner_.get(); }
+  TiltUnit* tilt() { return tilt_.get(); }
+  // Lets both instruments go and finds them anew, with growing pauses (pause_s, 0 at first), until that works
+  // or patience has ended, counted from `since`. `meanwhile` is called during the pauses and ends it by
+  // failing.
+  Status findAgain(const Error& why, const JobControl& job, Instant since, double& pause_s,
+                   const std::function<Status()>& meanwhile = {});
   // Puts the instruments to rest.
   Status release();
   // Of both instruments, "LMS291;S05 at /dev/ttyUSB0, MIP 50 at ...".
@@ -86,7 +108,7 @@ class Sweep {
   void noteWarnings(std::vector<std::string>& warnings);
 
   Instruments instruments_;
-  SweepSettings settings_;
+  SweepOptions settings_;
   std::unique_ptr<ScannerUnit> scanner_;
   std::unique_ptr<TiltUnit> tilt_;
 };

@@ -25,6 +25,7 @@ struct Sweep::Run {
   const ScannerGeometry& geometry;
   const Store& store;
   const JobControl& job;
+  const SweepEvents& events;
   std::vector<bool> taken;
   SweepReport report{};
   int left = 0;
@@ -73,6 +74,9 @@ struct Sweep::Run {
       if (unstored.size() <= most &&
           first.stored.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
         return {};
+      // A slow disk must not keep the tilt from being stopped; at the end all of them are waited for.
+      while (most > 0 && first.stored.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
+        if (job.stopRequested()) return {};
       const Status status = first.stored.get();
       report.slowest_store_s =
           std::max(report.slowest_store_s,
@@ -101,6 +105,7 @@ struct Sweep::Run {
     spoiled_in_a_row = 0;
     pause_s = 0.0;
     trouble_since.reset();
+    if (events.line) events.line(row, geometry.tiltOfRow(row), line);
     unstored.push_back({row, std::chrono::steady_clock::now(), store(row, std::move(line))});
   }
 

@@ -37,6 +37,9 @@ class ColaScannerUnit : public ScannerUnit {
   Result<std::optional<ScannerEvent>> poll() override;
   Status release() override;
   std::vector<std::string> takeWarnings() override;
+  std::vector<InstrumentFact> facts() const override {
+    return {{"type", name_}, {"turns", std::to_string(static_cast<int>(1.0 / turn_s_ + 0.5)) + " a second"}};
+  }
 
   // What it is and how it is set, without changing anything.
   struct Identity {

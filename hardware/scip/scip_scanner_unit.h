@@ -35,6 +35,10 @@ class ScipScannerUnit : public ScannerUnit {
   Result<std::optional<ScannerEvent>> poll() override;
   Status release() override;
   std::vector<std::string> takeWarnings() override;
+  std::vector<InstrumentFact> facts() const override {
+    return {{"type", parameters_.model},
+            {"turns", std::to_string(static_cast<int>(parameters_.rpm / 60.0 + 0.5)) + " a second"}};
+  }
 
   // What it is, without letting it measure.
   struct Identity {

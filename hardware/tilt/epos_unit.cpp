@@ -130,6 +130,7 @@ Status EposUnit::moveTo(double angle_rad) {
   if (Status status = checkAngle(angle_rad); !status) return status;
   target_ = drive_.countsOf(angle_rad);
   attempts_ = 0;
+  only_reading_ = false;
   irregular_ = false;
   if (phase_ == Phase::Still) {
     plan();
@@ -217,6 +218,12 @@ Result<bool> EposUnit::advance() {
 // The position has been read: is it the target?
 Status EposUnit::arrivedOrAgain(bool& there) {
   there = false;
+  if (phase_ == Phase::Reading && std::exchange(only_reading_, false)) {
+    reading_ = {drive_.angleOf(position_), position_, clock_.now() + durationOf(drive_.settle_s)};
+    phase_ = Phase::Still;
+    there = true;
+    return {};
+  }
   if (phase_ == Phase::Reading) {
     plan();
     return {};
@@ -252,6 +259,21 @@ Status EposUnit::arrivedOrAgain(bool& there) {
   look_again_ = clock_.now() + durationOf(kPauseS);
   steps_.push_back({Step::Kind::ReadPosition, reading(kPosition)});
   return {};
+}
+
+Status EposUnit::findWhereItStands() {
+  if (!ready_ || phase_ != Phase::Idle) return {};
+  irregular_ = false;
+  waiting_until_.reset();
+  steps_.push_back({Step::Kind::ReadPosition, reading(kPosition)});
+  only_reading_ = true;
+  phase_ = Phase::Reading;
+  return poll().map([](const auto&) {});
+}
+
+std::vector<InstrumentFact> EposUnit::facts() const {
+  return {{"protocol", eposProtocolName(link_.protocol())},
+          {"rate", std::to_string(channel_->line().baud) + " Bd"}};
 }
 
 Result<std::optional<TiltReading>> EposUnit::poll() {

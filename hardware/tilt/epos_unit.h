@@ -38,6 +38,8 @@ class EposUnit : public TiltUnit {
   // Beside sending nothing further, tells a motor that moves to halt.
   void stop() override;
   Status release() override;
+  Status findWhereItStands() override;
+  std::vector<InstrumentFact> facts() const override;
   std::vector<std::string> takeWarnings() override;
 
   EposProtocol protocol() const { return link_.protocol(); }
@@ -96,7 +98,8 @@ class EposUnit : public TiltUnit {
   std::int64_t position_ = 0;
   std::int64_t target_ = 0;
   int attempts_ = 0;
-  bool irregular_ = false;  // an answer was late, lost or garbled: look twice
+  bool only_reading_ = false;  // where it stands is wanted, not a move
+  bool irregular_ = false;     // an answer was late, lost or garbled: look twice
   Instant ended_{};
   Instant move_deadline_{};
   TiltReading reading_;

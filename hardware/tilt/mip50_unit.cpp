@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/text.h"
 #include "core/geometry/pose.h"
@@ -145,6 +146,7 @@ Status Mip50Unit::moveTo(double angle_rad) {
   if (Status status = checkAngle(angle_rad); !status) return status;
   target_ = drive_.countsOf(angle_rad);
   attempts_ = 0;
+  only_reading_ = false;
   irregular_ = false;
   steady_.reset();
   if (phase_ == Phase::Still) {
@@ -163,6 +165,11 @@ Status Mip50Unit::moveTo(double angle_rad) {
 Result<bool> Mip50Unit::arrived() {
   const std::int64_t before = position_;
   position_ = last_value_;
+  if (phase_ == Phase::Reading && std::exchange(only_reading_, false)) {
+    reading_ = {drive_.angleOf(position_), position_, clock_.now() + durationOf(drive_.settle_s)};
+    phase_ = Phase::Still;
+    return true;
+  }
   if (phase_ == Phase::Reading) return plan().map([] { return false; });
   const double off = std::abs(drive_.angleOf(position_) - drive_.angleOf(target_));
   if (phase_ == Phase::Gliding && !irregular_ && off <= drive_.tolerance_rad) settleSteady();
@@ -223,6 +230,30 @@ void Mip50Unit::stop() {
   }
   if (!script_.empty()) script_.erase(script_.begin() + (sent_ ? 1 : 0), script_.end());
   if (phase_ != Phase::Still) phase_ = Phase::Idle;
+}
+
+Status Mip50Unit::findWhereItStands() {
+  if (!ready_ || phase_ != Phase::Idle) return {};
+  irregular_ = false;
+  script_.push_back(positionRequest());
+  only_reading_ = true;
+  phase_ = Phase::Reading;
+  return poll().map([](const auto&) {});
+}
+
+Status Mip50Unit::identify(const JobControl& job) {
+  if (ready_) return {};
+  reader_.clear();
+  answers_.clear();
+  script_.clear();
+  sent_ = false;
+  if (Status status = channel_->discardInput(); !status) return status;
+  return findAsciiMode(job);
+}
+
+std::vector<InstrumentFact> Mip50Unit::facts() const {
+  return {{"rate", std::to_string(channel_->line().baud) + " Bd"},
+          {"regulation", ready_ ? "on, home found" : "off"}};
 }
 
 Status Mip50Unit::release() {

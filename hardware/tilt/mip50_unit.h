@@ -37,7 +37,12 @@ class Mip50Unit : public TiltUnit {
   double steadyDelay() const override;
   std::optional<SteadyMotion> steadyMotion() const override { return steady_known_ ? steady_ : std::nullopt; }
   Status release() override;
+  Status findWhereItStands() override;
   std::vector<std::string> takeWarnings() override;
+  std::vector<InstrumentFact> facts() const override;
+
+  // Is there a controller? Brings it into its ASCII mode; nothing moves.
+  Status identify(const JobControl& job);
 
   // For diagnosis; not while it moves. Blocks for at most a few seconds.
   Result<std::int64_t> readParameter(int number);
@@ -97,8 +102,9 @@ class Mip50Unit : public TiltUnit {
   std::int64_t position_ = 0;  // read back last
   std::int64_t target_ = 0;
   int attempts_ = 0;
-  bool irregular_ = false;  // an answer was late, lost or garbled: look twice
-  Instant ended_{};         // when the last segment was acknowledged
+  bool only_reading_ = false;  // where it stands is wanted, not a move
+  bool irregular_ = false;     // an answer was late, lost or garbled: look twice
+  Instant ended_{};            // when the last segment was acknowledged
   TiltReading reading_;
   std::optional<SteadyMotion> steady_;  // under way, or the last one
   bool steady_known_ = false;           // it is over, and was as it should have been

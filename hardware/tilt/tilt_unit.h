@@ -10,6 +10,7 @@
 #include "core/base/result.h"
 #include "hardware/tilt/steady_motion.h"
 #include "hardware/transport/clock.h"
+#include "hardware/transport/instrument_fact.h"
 
 namespace tiltmap {
 
@@ -54,8 +55,12 @@ class TiltUnit {
 
   // Lets go of the motor; at the end of the work.
   virtual Status release() = 0;
+  // After stop(): asks where it stands, and poll() tells. Nothing moves.
+  virtual Status findWhereItStands() { return {}; }
   // What the operator should know, once each.
   virtual std::vector<std::string> takeWarnings() { return {}; }
+  // Identity and health as it told them when it was prepared.
+  virtual std::vector<InstrumentFact> facts() const { return {}; }
 };
 
 // The drive between encoder and scanner: thesis 3.2 has a 1526:1 gear behind a motor of 2048 counts a turn.

@@ -45,7 +45,7 @@ Result<Taken> takeScan(const fs::path& scratch, const Case& one) {
   if (!experiment) return fail(experiment.error());
   auto bench = EmulatedBench::make(*experiment, rig, one.speed, one.baud);
   if (!bench) return fail(bench.error());
-  SweepSettings settings;
+  SweepOptions settings;
   settings.steady = one.steady;
   Sweep sweep((*bench)->instruments(), settings);
   if (Status status = sweep.prepare({}); !status) return fail(status.error());

@@ -20,7 +20,7 @@ class ModelsTest : public ::testing::Test {
     sweep_.reset();
     ASSERT_TRUE(settings_.chooseTilt(tilt));
     bench_ = *EmulatedBench::make(*Experiment::make(ExperimentId::Exp1, 3), settings_, speed);
-    SweepSettings settings;
+    SweepOptions settings;
     settings.patience_s = 120.0 * std::max(1.0, speed);
     sweep_ = std::make_unique<Sweep>(bench_->instruments(), settings);
     lines_.clear();

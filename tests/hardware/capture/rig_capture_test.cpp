@@ -14,7 +14,7 @@ class RigCaptureTest : public ::testing::Test {
     rows_ = rows;
     sweep_.reset();
     bench_ = *EmulatedBench::make(*Experiment::make(ExperimentId::Exp1, 3), settings_, speed);
-    SweepSettings settings;
+    SweepOptions settings;
     settings.patience_s = 120.0 * std::max(1.0, speed);
     sweep_ = std::make_unique<Sweep>(bench_->instruments(), settings);
     lines_.clear();

@@ -86,7 +86,7 @@ bool scanOnce(Project& project, EmulatedBench& bench, int stop, int rows, Tally&
   if (!bench.moveTo(stop)) return false;
   ScanId scan = 0;
   for (int attempt = 0; attempt < 40; ++attempt) {
-    SweepSettings settings;
+    SweepOptions settings;
     settings.patience_s = 20.0;
     Sweep sweep(bench.instruments(), settings);
     if (!sweep.prepare({})) {

@@ -29,7 +29,7 @@ class SteadySweepTest : public ::testing::Test {
             bench_->rig().tilt().angle(scan.measured_from + durationOf(beamDelay(geometry, {}, j))));
       sent_.push_back(std::move(sent));
     });
-    SweepSettings sweep;
+    SweepOptions sweep;
     sweep.steady = true;
     sweep.patience_s = 240.0;
     sweep_ = std::make_unique<Sweep>(bench_->instruments(), sweep);

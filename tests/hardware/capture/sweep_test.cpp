@@ -56,7 +56,7 @@ class SweepTest : public ::testing::Test {
     instruments.open_tilt = [this]() -> Result<std::unique_ptr<TiltUnit>> {
       return std::make_unique<LentTilt>(tilt_);
     };
-    sweep_ = std::make_unique<Sweep>(instruments, SweepSettings{});
+    sweep_ = std::make_unique<Sweep>(instruments, SweepOptions{});
   }
 
   // What the scanner sees tells at which tilt it was seen: 1 m and the angle at either end of the measuring.
