@@ -71,7 +71,9 @@ void Workspace::tellFinished(int id) {
   else
     logLine(LogLevel::Info, line);
   if (job->phase == JobPhase::Cancelled)
-    messages_.note(job->title + ": cancelled. The project is as it was.");
+    messages_.note(job->title + (job->operation == "capture"
+                                     ? ": stopped. Every line that was complete is kept."
+                                     : ": cancelled. The project is as it was."));
 }
 
 }  // namespace tiltmap::ui

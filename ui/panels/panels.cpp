@@ -1,5 +1,7 @@
 // The list of the window's panels. A new one is declared in a file of its own and added here; its places are
 // in ui/window/perspectives.cpp.
+#include "ui/panels/capture_line_panels.h"
+#include "ui/panels/capture_panel.h"
 #include "ui/panels/depth_image_panel.h"
 #include "ui/panels/details_panel.h"
 #include "ui/panels/history_panel.h"
@@ -34,6 +36,12 @@ const std::vector<PanelInfo>& panels() {
       {"view3d", "3D view", "draw-cuboid", "The scans in space, with path and headings", make<View3dPanel>},
       {"depth-image", "Depth image", "range-matrix", "The range matrix of a scan, cell by cell",
        make<DepthImagePanel>},
+      {"capture", "Capture", "tilt-unit", "Instruments, the tilt, the next stop, and how its sweep goes",
+       make<CapturePanel>},
+      {"capture-line", "Live line", "office-chart-polar", "What the scanner sees now, from above",
+       make<CaptureLinePanel>},
+      {"capture-matrix", "Sweep", "range-matrix", "The range matrix of the sweep, filling line by line",
+       make<CaptureMatrixPanel>},
       {"details", "Details", "documentinfo", "What is known about the selected scan or link",
        make<DetailsPanel>},
       {"localisation", "Localisation", "table", "Where the stops are, by stage", make<LocalisationPanel>},

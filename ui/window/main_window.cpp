@@ -9,6 +9,7 @@
 #include <QStackedWidget>
 #include <QVBoxLayout>
 
+#include "ui/actions/capture_actions.h"
 #include "ui/look/icons.h"
 #include "ui/look/theme.h"
 #include "ui/models/photograph_model.h"
@@ -90,6 +91,7 @@ void MainWindow::addActions() {
   addOperationActions(actions_, *this);
   addLinkActions(actions_, *this);
   addStepperActions(actions_, *this);
+  addCaptureActions(actions_, *this);
   addViewActions(actions_, *this);
   addHelpActions(actions_, *this);
   for (QAction* action : actions_.all()) addAction(action);

@@ -60,7 +60,7 @@ void MainWindow::makeMenus() {
         "stage.clear"});
   fill(view, actions_, {"", "view.show-all", "view.show-only", "view.show", "view.hide", "", "view.palette"});
   fill(menuBar()->addMenu("&Capture"), actions_,
-       {"file.capture", "op.capture", "", "op.import", "op.simulate"});
+       {"capture.open", "capture.stop", "", "file.capture", "op.capture", "", "op.import", "op.simulate"});
   QMenu* registering = menuBar()->addMenu("&Register");
   fill(registering, actions_, {"op.register", "op.rebase"});
   fill(registering, actions_, otherOperations());

@@ -19,7 +19,7 @@ QString perspectiveName(Perspective perspective) {
 QString perspectiveHelp(Perspective perspective) {
   switch (perspective) {
     case Perspective::Capture:
-      return "Bring scans in: import, simulate, and see each one as it comes";
+      return "Bring scans in with the instruments, and see each one as it comes";
     case Perspective::Inspect:
       return "Look at every scan: depth image, 3D view and details side by side";
     case Perspective::Register:
@@ -35,11 +35,14 @@ std::vector<DockPlace> delivered(Perspective perspective) {
   switch (perspective) {
     case Perspective::Capture:
       return {{"view3d", Left, "", 0},
-              {"project-tree", Left, "view3d", 0.22},
-              {"details", Bottom, "project-tree", 0.45},
-              {"depth-image", Bottom, "view3d", 0.40},
-              {"photographs", Tab, "depth-image", 0},
-              {"log", Tab, "depth-image", 0}};
+              {"project-tree", Left, "view3d", 0.17},
+              {"capture", Right, "view3d", 0.33},
+              {"capture-matrix", Bottom, "view3d", 0.42},
+              {"capture-line", Right, "capture-matrix", 0.42},
+              {"depth-image", Tab, "capture-matrix", 0},
+              {"photographs", Tab, "capture-matrix", 0},
+              {"log", Tab, "capture-matrix", 0},
+              {"details", Tab, "project-tree", 0}};
     case Perspective::Inspect:
       return {{"view3d", Left, "", 0},
               {"project-tree", Left, "view3d", 0.225},

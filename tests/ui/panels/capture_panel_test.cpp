@@ -1,0 +1,240 @@
+// The capture panel through every state, driven by mouse and keyboard against the emulator.
+#include "ui/panels/capture_panel.h"
+
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QPushButton>
+#include <QTabWidget>
+
+#include <gtest/gtest.h>
+
+#include "tests/ui/support/widget_rules.h"
+#include "tests/ui/support/window_fixture.h"
+#include "ui/models/capture_model.h"
+#include "ui/panels/capture_banner.h"
+#include "ui/panels/capture_connect_page.h"
+#include "ui/panels/capture_line_panels.h"
+#include "ui/panels/polar_view.h"
+#include "ui/panels/sweep_matrix_view.h"
+
+namespace tiltmap::test {
+namespace {
+
+using ui::CaptureModel;
+using ui::CapturePanel;
+
+class CapturePanelTest : public WindowTest {
+ protected:
+  void SetUp() override {
+    makeProject(0);
+    ASSERT_TRUE(trigger("capture.open"));
+    panel = qobject_cast<CapturePanel*>(window->docks().panel("capture"));
+    ASSERT_NE(panel, nullptr);
+    find<QComboBox>("capture-source")
+        ->setCurrentIndex(static_cast<int>(ui::CaptureConnectPage::Source::Emulator));
+    model().parameters().setValue("lines", 24LL);
+    settle();
+  }
+  CaptureModel& model() { return panel->model(); }
+  QString title() { return panel->banner().title(); }
+  QString sentence() { return panel->banner().sentence(); }
+  ::testing::AssertionResult comes(StationState state) {
+    if (waitUntil([&] { return model().state() == state; })) {
+      settle();
+      return ::testing::AssertionSuccess();
+    }
+    return ::testing::AssertionFailure() << title().toStdString() << ": " << sentence().toStdString();
+  }
+  // 0: in memory, as fast as the machine can.
+  void connectByMouse(double speed = 0.0) {
+    find<QDoubleSpinBox>("capture-speed")->setValue(speed);
+    click("capture-connect");
+  }
+  void connected(double speed = 0.0) {
+    connectByMouse(speed);
+    ASSERT_TRUE(comes(StationState::Ready));
+  }
+  void show(int page) {
+    find<QTabWidget>("capture-tabs")->setCurrentIndex(page);
+    settle();
+  }
+  bool isEnabled(const QString& name) { return find(name)->isEnabled(); }
+  void expectStopIsThere() {
+    auto* stop = find<QPushButton>("capture-stop");
+    EXPECT_TRUE(stop->isVisible() && stop->isEnabled());
+    EXPECT_GE(stop->height(), 44);
+    const QColor ground = stop->palette().color(QPalette::Button);
+    EXPECT_GT(ground.red(), 2 * (ground.green() + ground.blue()));
+    EXPECT_FALSE(title().isEmpty());
+    EXPECT_FALSE(sentence().isEmpty()) << title().toStdString();
+  }
+
+  CapturePanel* panel = nullptr;
+};
+
+TEST_F(CapturePanelTest, GoesThroughEveryStateAndStopIsAlwaysThere) {
+  EXPECT_EQ(title(), "Not connected");
+  EXPECT_FALSE(isEnabled("capture-start"));
+  EXPECT_NE(find("capture-start")->toolTip().indexOf("connected"), -1);
+  expectStopIsThere();
+  click("capture-stop");
+  EXPECT_EQ(title(), "Not connected");
+
+  connectByMouse(1.0);
+  ASSERT_TRUE(comes(StationState::Connecting));
+  EXPECT_EQ(title(), "Connecting");
+  expectStopIsThere();
+  click("capture-stop");
+  ASSERT_TRUE(comes(StationState::Idle));
+
+  connected();
+  EXPECT_EQ(title(), "Ready");
+  EXPECT_TRUE(isEnabled("capture-start"));
+  EXPECT_NE(find<QLabel>("capture-instruments")->text().indexOf("LMS291"), -1);
+  expectStopIsThere();
+
+  click("capture-start");
+  ASSERT_TRUE(waitUntil([&] { return model().now().sweep.number == 1; }));
+  expectStopIsThere();
+  ASSERT_TRUE(comes(StationState::Verdict));
+  ASSERT_TRUE(waitUntil([&] { return model().verdict().judgement().has_value(); }));
+  settle();
+  EXPECT_TRUE(title() == "Move on" || title() == "Rescan" || title() == "Closer") << title().toStdString();
+  expectStopIsThere();
+  EXPECT_EQ(find<QLabel>("capture-figure-0")->text(), "24 of 24");
+}
+
+TEST_F(CapturePanelTest, AFaultSaysWhatToDoAndConnectingAgainHelps) {
+  connected(1.0);
+  model().order("silent");
+  ASSERT_TRUE(comes(StationState::Reconnecting));
+  EXPECT_EQ(title(), "An instrument is lost");
+  EXPECT_NE(sentence().indexOf("What to do"), -1);
+  expectStopIsThere();
+  press(QKeySequence(Qt::Key_F12));
+  ASSERT_TRUE(comes(StationState::Fault));
+  EXPECT_EQ(title(), "Fault");
+  EXPECT_NE(sentence().indexOf("What to do"), -1) << sentence().toStdString();
+  EXPECT_FALSE(isEnabled("capture-start"));
+  expectStopIsThere();
+  EXPECT_EQ(find<QPushButton>("capture-connect")->text(), "Connect again");
+  connected();
+  click("capture-connect");
+  ASSERT_TRUE(comes(StationState::Idle));
+}
+
+TEST_F(CapturePanelTest, TwoStopsInARowByKeyboard) {
+  connected();
+  for (int stop = 1; stop <= 2; ++stop) {
+    find("capture-start")->setFocus();
+    QTest::keyClick(find("capture-start"), Qt::Key_Space);
+    ASSERT_TRUE(waitUntil([&] { return model().now().sweep.number == stop && !model().isSweeping(); }));
+    ASSERT_TRUE(comes(StationState::Verdict));
+    ASSERT_TRUE(waitUntil([&] { return model().verdict().judgement().has_value(); }));
+    EXPECT_EQ(snapshot().scans().size(), static_cast<std::size_t>(stop));
+    EXPECT_EQ(snapshot().scans().back().lines, 24);
+  }
+}
+
+TEST_F(CapturePanelTest, StopInASweepKeepsTheLinesAndGoOnTakesTheRest) {
+  model().parameters().setValue("lines", 101LL);
+  connected();
+  EXPECT_FALSE(find("capture-resume")->isVisible());
+  click("capture-start");
+  ASSERT_TRUE(waitUntil([&] { return model().now().sweep.rows_taken >= 5; }));
+  QTest::mouseClick(find("capture-stop"), Qt::LeftButton);
+  ASSERT_TRUE(comes(StationState::Ready));
+  const int kept = snapshot().scans()[0].lines;
+  EXPECT_GE(kept, 5);
+  EXPECT_LT(kept, 101);
+  ASSERT_TRUE(waitUntil([&] { return find("capture-resume")->isVisible(); }));
+  click("capture-resume");
+  ASSERT_TRUE(waitUntil([&] { return snapshot().scans()[0].lines == 101; }));
+  ASSERT_TRUE(comes(StationState::Verdict));
+  settle();
+  EXPECT_FALSE(find("capture-resume")->isVisible());
+}
+
+TEST_F(CapturePanelTest, TheTiltIsMovedByItsButtons) {
+  connected();
+  show(1);
+  const auto angle = [&] { return find<QLabel>("capture-tilt-angle")->text(); };
+  find<QDoubleSpinBox>("capture-tilt-target")->setValue(10.0);
+  click("capture-tilt-go");
+  ASSERT_TRUE(waitUntil([&] { return angle() == "+10.00°"; })) << angle().toStdString();
+  click("capture-jog-up-far");
+  ASSERT_TRUE(waitUntil([&] { return angle() == "+15.00°"; })) << angle().toStdString();
+  click("capture-jog-down-near");
+  ASSERT_TRUE(waitUntil([&] { return angle() == "+14.20°"; })) << angle().toStdString();
+  click("capture-park");
+  ASSERT_TRUE(waitUntil([&] { return angle() == "+0.00°" || angle() == "-0.00°"; })) << angle().toStdString();
+  ASSERT_TRUE(comes(StationState::Ready));
+  click("capture-home");
+  ASSERT_TRUE(waitUntil([&] { return model().now().tilt_rad && std::abs(*model().now().tilt_rad) > 0.1; }));
+  ASSERT_TRUE(comes(StationState::Ready));
+}
+
+TEST_F(CapturePanelTest, WhatTheScannerSeesIsShown) {
+  connected();
+  auto* line = qobject_cast<ui::CaptureLinePanel*>(window->docks().panel("capture-line"));
+  auto* matrix = qobject_cast<ui::CaptureMatrixPanel*>(window->docks().panel("capture-matrix"));
+  ASSERT_TRUE(line && matrix);
+  ASSERT_TRUE(waitUntil([&] { return !line->view().isEmpty(); }));
+  click("capture-start");
+  ASSERT_TRUE(comes(StationState::Verdict));
+  EXPECT_EQ(matrix->view().rows(), 24);
+  EXPECT_EQ(matrix->view().taken(), 24);
+  show(0);
+  click("capture-connect");
+  ASSERT_TRUE(comes(StationState::Idle));
+  EXPECT_TRUE(line->view().isEmpty());
+}
+
+TEST_F(CapturePanelTest, ClosingTheWindowInASweepKeepsEveryLine) {
+  model().parameters().setValue("lines", 101LL);
+  connected();
+  click("capture-start");
+  ASSERT_TRUE(waitUntil([&] { return model().now().sweep.rows_taken >= 5; }));
+  const int lines = snapshot().scans()[0].lines;
+  const QString path = workspace().session().path();
+  window->closeNow();
+  delete window.data();
+  const auto project = Project::open(ui::pathOf(path), Access::ReadOnly);
+  ASSERT_TRUE(project);
+  EXPECT_GE((*project)->snapshot()->scans()[0].lines, lines);
+  EXPECT_TRUE((*project)->verify());
+}
+
+TEST_F(CapturePanelTest, EverythingThatIsPressedIsTallAndNothingIsCutOff) {
+  for (const ui::ThemeChoice look : {ui::ThemeChoice::Light, ui::ThemeChoice::HighContrast}) {
+    preferences.setTheme(look);
+    window->resize(1366, 768);
+    for (int page = 0; page < 3; ++page) {
+      show(page);
+      int tall = 0;
+      for (const auto* button : panel->findChildren<QAbstractButton*>()) {
+        if (!button->isVisible() || isForeign(*button)) continue;
+        EXPECT_GE(button->height(), CapturePanel::kTarget_px) << placeOf(*button);
+        ++tall;
+      }
+      EXPECT_GE(tall, 2);
+      for (const std::string& text : cutOff(*panel)) ADD_FAILURE() << page << " cut off: " << text;
+      auto* scroll = find<QTabWidget>("capture-tabs")->currentWidget();
+      EXPECT_GT(scroll->height(), 150) << "room for the page";
+    }
+  }
+  preferences.setTheme(ui::ThemeChoice::Light);
+}
+
+TEST_F(CapturePanelTest, AWrongRecordingIsToldWhereItWasChosen) {
+  find<QComboBox>("capture-source")
+      ->setCurrentIndex(static_cast<int>(ui::CaptureConnectPage::Source::Recording));
+  settle();
+  click("capture-connect");
+  ASSERT_TRUE(workspace().messages().latest());
+  EXPECT_NE(workspace().messages().latest()->text.indexOf("recording"), -1);
+  EXPECT_EQ(model().state(), StationState::Idle);
+}
+
+}  // namespace
+}  // namespace tiltmap::test
