@@ -12,7 +12,7 @@ struct JudgementSettings {
   double fit_good = 0.7, fit_bad = 0.5;
   // The share that stands where the other scan looked through, at most.
   double through_good = 0.02, through_bad = 0.06;
-  // The share of the smaller scan's surfaces that lie on the other's, at least.
+  // The share of the surfaces of one scan that lie on those of the other, at least, by the side that sees more.
   double overlap_good = 0.1, overlap_bad = 0.05;
   // Their distance over what their own noise makes of it, medians, at most.
   double residual_good = 2.5, residual_bad = 8.0;
@@ -21,7 +21,7 @@ struct JudgementSettings {
   // Two deviations of the place and of the heading in the weakest direction, at most.
   double weak_good_m = 0.025, weak_bad_m = 0.3;
   double weak_good_rad = 0.3 * kDegree, weak_bad_rad = 3.0 * kDegree;
-  // How far the surfaces still pull the pose, at most; and only where it is so many deviations.
+  // How far the surfaces still pull the pose, at most.
   double pull_good_m = 0.015, pull_bad_m = 0.06;
   double pull_good_rad = 0.15 * kDegree, pull_bad_rad = 0.6 * kDegree;
   // How far the pose lies from where the registration started, at most: a cause for doubt, never more.
