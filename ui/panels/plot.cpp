@@ -2,6 +2,7 @@
 
 #include <QEvent>
 #include <QMouseEvent>
+#include <QPolygonF>
 #include <QVBoxLayout>
 #include <qwt_legend.h>
 #include <qwt_plot.h>
@@ -17,7 +18,6 @@
 #include <qwt_scale_widget.h>
 #include <qwt_symbol.h>
 #include <qwt_text.h>
-#include <utility>
 
 namespace tiltmap::ui {
 
@@ -138,8 +138,22 @@ void Plot::setLogarithmic(Axis axis) {
 
 void Plot::setEqualScales() {
   parts_->rescaler =
-      new QwtPlotRescaler(parts_->plot->canvas(), QwtPlot::xBottom, QwtPlotRescaler::Expanding);
+      new QwtPlotRescaler(parts_->plot->canvas(), QwtPlot::xBottom, QwtPlotRescaler::Fitting);
   parts_->rescaler->setAspectRatio(QwtPlot::yLeft, 1.0);
+}
+
+void Plot::fitSeries() {
+  QPolygonF all;
+  for (int k = 0; k < parts_->series.size(); ++k) all += points(k);
+  const QRectF room = all.isEmpty() ? QRectF(-10.0, -5.0, 20.0, 10.0) : all.boundingRect();
+  parts_->rescaler->setIntervalHint(QwtPlot::xBottom, QwtInterval(room.left(), room.right()));
+  parts_->rescaler->setIntervalHint(QwtPlot::yLeft, QwtInterval(room.top(), room.bottom()));
+  parts_->rescaler->rescale();
+}
+
+std::pair<double, double> Plot::range(Axis axis) const {
+  const QwtInterval shown = parts_->plot->axisInterval(axisId(axis));
+  return {shown.minValue(), shown.maxValue()};
 }
 
 void Plot::showLegend() {
@@ -209,7 +223,7 @@ void Plot::redraw() {
   // A legend that entries come to while its plot is hidden leaves out those that were there before: it is
   // made anew.
   if (std::exchange(parts_->legend_changed, false) && parts_->legend) showLegend();
-  if (parts_->rescaler) parts_->rescaler->rescale();
+  if (parts_->rescaler) fitSeries();
 }
 
 QVector<QPointF> Plot::points(int series) const {

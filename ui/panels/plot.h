@@ -34,8 +34,9 @@ class Plot : public QWidget {
   void setRange(Axis axis, double from, double to, double step = 0.0);
   void setAutomatic(Axis axis);
   void setLogarithmic(Axis axis);
-  // The same length of both axes shows the same number of units.
+  // The same length of both axes shows the same number of units, and both hold all points.
   void setEqualScales();
+  std::pair<double, double> range(Axis axis) const;  // shown
   void showLegend();
 
   // The numbers name the series from now on. Dots have no line.
@@ -66,6 +67,7 @@ class Plot : public QWidget {
 
  private:
   void restyle();
+  void fitSeries();  // for equal scales, which have curves and dots only
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };

@@ -60,13 +60,6 @@ void SlicePlot::refresh() {
                                         model_.isEnded() ? model_.result()->fixed_from_moving : model_.pose())
                                : QVector<QPointF>());
   setInLegend(by_scan_, compared);
-  if (slices) {
-    setAutomatic(Bottom);
-    setAutomatic(Left);
-  } else {
-    setRange(Bottom, -10.0, 10.0);
-    setRange(Left, -5.0, 5.0);
-  }
   redraw();
 }
 

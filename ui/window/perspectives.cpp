@@ -42,7 +42,7 @@ std::vector<DockPlace> delivered(Perspective perspective) {
               {"depth-image", Tab, "capture-matrix", 0},
               {"photographs", Tab, "capture-matrix", 0},
               {"log", Tab, "capture-matrix", 0},
-              {"details", Tab, "project-tree", 0}};
+              {"details", Tab, "capture-matrix", 0}};
     case Perspective::Inspect:
       return {{"view3d", Left, "", 0},
               {"project-tree", Left, "view3d", 0.225},

@@ -29,7 +29,7 @@ class SiteModelsTest : public WorkspaceTest {
     const auto poses = snapshot().filledPoses(Stage::Odometry);
     Link link = sampleLink(id(a), id(b));
     link.fixed_from_moving = poses[a].inverse() * poses[b];
-    link.information = Matrix6d::Identity() * 1e4;
+    link.information = Matrix6d::Identity() * 1e8;
     return link;
   }
   LinkId link(std::size_t k) { return snapshot().links()[k].id; }

@@ -13,6 +13,7 @@
 
 #include "tests/ui/support/stepper_window.h"
 #include "ui/models/study_model.h"
+#include "ui/panels/slices_tab.h"
 #include "ui/panels/stepper_panel.h"
 #include "ui/panels/stepper_plots.h"
 
@@ -199,6 +200,19 @@ TEST_F(StepperPanelsTest, SlicesAreMatchedAndCompared) {
   EXPECT_TRUE(text("stepper-slice-text").contains("points"));
   runByMouse();
   ASSERT_TRUE(study.comparison());
+  // Both axes hold all points, whatever the room.
+  const auto* plot = find<ui::SlicePlot>("stepper-slices");
+  const auto [left, right] = plot->range(ui::Plot::Bottom);
+  const auto [bottom, top] = plot->range(ui::Plot::Left);
+  EXPECT_NEAR((right - left) / plot->canvas()->width(), (top - bottom) / plot->canvas()->height(),
+              0.05 * (right - left) / plot->canvas()->width());
+  for (int series = 0; series < 3; ++series) {
+    EXPECT_FALSE(plot->points(series).isEmpty());
+    for (const QPointF& point : plot->points(series)) {
+      ASSERT_TRUE(point.x() >= left && point.x() <= right) << point.x();
+      ASSERT_TRUE(point.y() >= bottom && point.y() <= top) << point.y();
+    }
+  }
   EXPECT_TRUE(text("stepper-slice-text").contains("of height"));
   find<QDoubleSpinBox>("stepper-slice-height")->setValue(1.5);
   EXPECT_FALSE(study.slices());

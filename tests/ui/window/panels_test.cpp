@@ -170,7 +170,7 @@ TEST_F(PanelsTest, PanelsHaveTheirSharesOfTheWindowWhateverWasThereBefore) {
   for (const bool again : {false, true}) {
     window->setPerspective(Perspective::Capture);
     settle();
-    EXPECT_NEAR(share("project-tree"), 0.22, 0.03);
+    EXPECT_NEAR(share("project-tree"), 0.17, 0.03);
     window->setPerspective(Perspective::Relax);
     if (again) window->resetLayout();
     settle();
