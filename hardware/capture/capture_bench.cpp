@@ -6,15 +6,17 @@ namespace tiltmap {
 
 namespace {
 
-// What happens in virtual time is shown as slowly as it happened.
+// What happens in virtual time is shown as slowly as it happened, or so many times as fast.
 class PacedClock : public VirtualClock {
  public:
+  explicit PacedClock(double speed) : speed_(speed) {}
   void sleepUntil(Instant until) override {
     VirtualClock::sleepUntil(until);
-    std::this_thread::sleep_until(begun_ + (now() - Instant{}));
+    std::this_thread::sleep_until(begun_ + durationOf(secondsOf(now() - Instant{}) / speed_));
   }
 
  private:
+  double speed_;
   std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
 };
 
@@ -29,7 +31,11 @@ Result<std::unique_ptr<CaptureBench>> CaptureBench::open(const CaptureSettings& 
                                                          const AskOperator& ask) {
   auto bench = std::make_unique<CaptureBench>();
   if (tiltmap::replays(settings)) {
-    bench->replay_clock_ = std::make_unique<PacedClock>();
+    const auto url = parseDeviceUrl(settings.scanner, scannerSchemes());
+    if (!url) return fail(url.error());
+    const auto speed = url->number("speed", 0.01, 1000.0);
+    if (!speed) return fail(speed.error());
+    bench->replay_clock_ = std::make_unique<PacedClock>(speed->value_or(1.0));
     auto replayed = replayedInstruments(settings.scanner, settings.tilt, *bench->replay_clock_);
     if (!replayed) return fail(replayed.error());
     bench->instruments_ = std::move(*replayed);

@@ -20,9 +20,9 @@ namespace tiltmap {
 Result<Instruments> namedInstruments(const std::string& scanner_url, const std::string& tilt_url,
                                      RealClock& clock, AskOperator ask);
 
-// The same of two recordings that were made together ("lms2xx:replay:FILE"), on one clock: every answer comes
-// when it came then. On a virtual clock each line finds the tilt where it found it then, however busy the
-// machine is.
+// The same of two recordings that were made together ("lms2xx:replay:FILE"), on one clock. On a virtual one
+// the tilt is never later than it was then, however busy the machine is; a recording in which lines had to be
+// taken again because it was too late may come out another way, and then ends with an error.
 Result<Instruments> replayedInstruments(const std::string& scanner_url, const std::string& tilt_url,
                                         Clock& clock);
 

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <filesystem>
 #include <map>
 
@@ -267,22 +266,16 @@ Result<Instruments> namedInstruments(const std::string& scanner_url, const std::
 Result<Instruments> replayedInstruments(const std::string& scanner_url, const std::string& tilt_url,
                                         Clock& clock) {
   std::map<std::string, WireSession> sessions;  // by URL
-  double begun_unix_s = 0.0;
   for (const bool scanner : {true, false}) {
     const auto url =
         parseDeviceUrl(scanner ? scanner_url : tilt_url, scanner ? scannerSchemes() : tiltSchemes());
     if (!url) return fail(url.error());
     auto session = readSession(url->port.substr(url->port.find(':') + 1));
     if (!session) return fail(session.error());
-    begun_unix_s = scanner ? session->begun_unix_s : std::min(begun_unix_s, session->begun_unix_s);
     sessions[url->text()] = std::move(*session);
   }
-  const Instant begun = clock.now();
   return instrumentsOf(scanner_url, tilt_url, clock, {}, [&](const DeviceUrl& url, int) {
-    WireSession& session = sessions.at(url.text());
-    const Instant own = begun + durationOf(session.begun_unix_s - begun_unix_s);
-    const auto opener = std::make_shared<ReplayOpener>(std::move(session), clock);
-    opener->replayFrom(own);
+    const auto opener = std::make_shared<ReplayOpener>(std::move(sessions.at(url.text())), clock);
     return [opener] { return opener->open(); };
   });
 }

@@ -27,9 +27,6 @@ Result<std::unique_ptr<ByteChannel>> ChannelOpener::open() {
     auto log = SessionLog::create(*file, url_.text());
     if (!log) return fail(log.error());
     log_ = std::move(*log);
-    // Records count from when the file says that it was begun, so that two recordings can be put side by
-    // side.
-    (void)log_->begun(clock_.now());
   }
   const bool network = url_.tcp_port != 0 || url_.port.starts_with(kTcp);
   auto channel = url_.port.starts_with(kReplay) ? openReplay()

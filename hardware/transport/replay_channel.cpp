@@ -35,7 +35,6 @@ std::size_t ReplayChannel::nextReceived() const {
 }
 
 Instant ReplayChannel::due(const WireRecord& record) const {
-  if (begun_) return *begun_ + durationOf(secondsOf(record.at) / speed_);
   return anchor_ + durationOf(secondsOf(record.at - anchor_then_) / speed_);
 }
 
@@ -131,10 +130,7 @@ Result<std::unique_ptr<ByteChannel>> ReplayOpener::open() {
   std::vector<WireRecord>& part = parts_[next_++];
   if (part.front().kind == WireRecord::Kind::Lost)
     return fail(part.front().text, "replay of " + about_, "so it was when this was recorded");
-  auto channel =
-      std::make_unique<ReplayChannel>(WireSession{about_, 0.0, std::move(part)}, clock_, speed_, gate_);
-  if (begun_) channel->replayFrom(*begun_);
-  return channel;
+  return std::make_unique<ReplayChannel>(WireSession{about_, 0.0, std::move(part)}, clock_, speed_, gate_);
 }
 
 }  // namespace tiltmap

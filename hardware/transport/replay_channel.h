@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 
 #include "hardware/transport/session_log.h"
 
@@ -20,9 +19,6 @@ class ReplayChannel : public ByteChannel {
   using Gate = std::function<void(const WireRecord&)>;
 
   ReplayChannel(WireSession session, Clock& clock, double speed = 1.0, Gate gate = {});
-  // What was received becomes readable at its own time after `begun`, whatever is written: so that recordings
-  // of several instruments, on one clock, stay together as they were.
-  void replayFrom(Instant begun) { begun_ = begun; }
 
   Result<std::size_t> read(std::span<Byte> buffer, Instant deadline) override;
   Status write(std::span<const Byte> bytes) override;
@@ -39,7 +35,6 @@ class ReplayChannel : public ByteChannel {
   // Index of the next record to be received, or size() where a write must come first or nothing is left.
   std::size_t nextReceived() const;
   Instant due(const WireRecord& record) const;
-  std::optional<Instant> begun_{};
 
   WireSession session_;
   Clock& clock_;
@@ -64,11 +59,8 @@ class ReplayOpener {
  public:
   ReplayOpener(WireSession session, Clock& clock, double speed = 1.0, ReplayChannel::Gate gate = {});
   Result<std::unique_ptr<ByteChannel>> open();
-  // As ReplayChannel's, of all that are opened.
-  void replayFrom(Instant begun) { begun_ = begun; }
 
  private:
-  std::optional<Instant> begun_;
   std::string about_;
   std::vector<std::vector<WireRecord>> parts_;
   std::size_t next_ = 0;

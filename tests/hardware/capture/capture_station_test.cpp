@@ -27,28 +27,28 @@ class CaptureStationTest : public ::testing::Test {
     make();
   }
   void make(StationSettings settings = {}) {
-    if (seen_) seen_->ready = false;
     station_.reset();
     seen_ = std::make_shared<Seen>();
     // In virtual time an instrument is found again before anybody has looked.
     station_ = std::make_shared<CaptureStation>(
-        [this, seen = seen_] {
-          if (!seen->ready) return;
-          const StationSnapshot snapshot = station_->snapshot();
+        [seen = seen_] {
+          // Told until its thread has ended, which is before it goes.
+          const CaptureStation* station = seen->station;
+          if (!station) return;
+          const StationSnapshot snapshot = station->snapshot();
           const std::lock_guard lock(seen->mutex);
           if (seen->states.empty() || seen->states.back() != snapshot.state)
             seen->states.push_back(snapshot.state);
         },
         std::move(settings));
-    seen_->ready = true;
+    seen_->station = station_.get();
   }
-  ~CaptureStationTest() override { seen_->ready = false; }
   bool wasSeen(StationState state) const {
     const std::lock_guard lock(seen_->mutex);
     return std::ranges::find(seen_->states, state) != seen_->states.end();
   }
   struct Seen {
-    std::atomic<bool> ready = false;
+    std::atomic<const CaptureStation*> station = nullptr;
     std::mutex mutex;
     std::vector<StationState> states;
   };
@@ -431,21 +431,59 @@ class Ports : public CaptureStationTest {
   std::unique_ptr<TerminalRig> rig_;
 };
 
-TEST_F(Ports, WhatIsPluggedInIsFoundWhicheverWayRound) {
-  for (const bool swapped : {false, true}) {
-    StationSettings settings;
-    settings.ports = {rig_->scannerPort(), rig_->tiltPort()};
-    if (swapped) std::swap(settings.ports[0], settings.ports[1]);
-    make(settings);
-    station_->connectToWhatIsThere(level());
-    ASSERT_TRUE(comes(StationState::Ready));
-    EXPECT_EQ(now().source.scanner, "lms2xx:" + rig_->scannerPort());
-    EXPECT_EQ(now().source.tilt, "mip50:" + rig_->tiltPort() + "?" + level());
-  }
+TEST_F(Ports, WhatIsPluggedInIsFound) {
+  make({.ports = {rig_->tiltPort(), rig_->scannerPort()}});
+  station_->connectToWhatIsThere(level());
+  ASSERT_TRUE(comes(StationState::Ready));
+  EXPECT_EQ(now().source.scanner, "lms2xx:" + rig_->scannerPort());
+  EXPECT_EQ(now().source.tilt, "mip50:" + rig_->tiltPort() + "?" + level());
   make({.ports = {rig_->scannerPort()}});
   station_->connectToWhatIsThere("");
   ASSERT_TRUE(comes(StationState::Fault));
   EXPECT_NE(now().error->what.find("no tilt unit"), std::string::npos) << now().error->what;
+}
+
+TEST_F(Ports, ARecordedSessionIsReplayedAsIfLive) {
+  CaptureSettings source;
+  const std::string scanner_log = (folder_ / "scanner.wire").string(),
+                    tilt_log = (folder_ / "tilt.wire").string();
+  source.scanner = "lms2xx:" + rig_->scannerPort() + "?log=" + scanner_log;
+  source.tilt = "mip50:" + rig_->tiltPort() + "?" + level() + "&log=" + tilt_log;
+  // As `tiltmap capture` records it: connected for the sweep.
+  const auto operation = makeCaptureOperation();
+  auto job = Job::start(*operation, project_->snapshot(), "default",
+                        {{"scanner", source.scanner}, {"tilt", source.tilt}, {"lines", 5LL}});
+  ASSERT_TRUE(job);
+  while (!(*job)->waitFor(5ms)) (*job)->serve(*project_);
+  (*job)->serve(*project_);
+  const auto recorded = (*job)->result();
+  if (!recorded || recorded->report_json.find("\"spoiled\":0") == std::string::npos ||
+      recorded->report_json.find("\"recoveries\":0") == std::string::npos)
+    GTEST_SKIP() << "the machine is too busy for instruments in real time, nothing worth replaying: "
+                 << (recorded ? recorded->report_json : recorded.error().what);
+  rig_.reset();
+  source.scanner = "lms2xx:replay:" + scanner_log + "?speed=50";
+  source.tilt = "mip50:replay:" + tilt_log + "?" + level();
+  station_->connect(source);
+  ASSERT_TRUE(comes(StationState::Ready));
+  EXPECT_TRUE(now().replays);
+  for (int replay = 0; replay < 2; ++replay) {
+    const auto outcome = capture(5);
+    ASSERT_TRUE(outcome) << outcome.error().what << " " << outcome.error().where;
+    EXPECT_EQ(now().sweep.recoveries, 0);
+    const auto then = project_->snapshot()->scans().front().image(),
+               again = project_->snapshot()->scans().back().image();
+    ASSERT_TRUE(then && again);
+    EXPECT_EQ((*then)->data().code, (*again)->data().code);
+    for (int row = 0; row < 5; ++row) EXPECT_EQ((*then)->lineTilt(row), (*again)->lineTilt(row));
+  }
+  station_->jogBy(0.1);
+  ASSERT_TRUE(comes([&] { return now().error.has_value(); }));
+  EXPECT_NE(now().error->what.find("recording"), std::string::npos);
+  source.scanner = "lms2xx:replay:/no/such/file";
+  station_->connect(source);
+  ASSERT_TRUE(comes(StationState::Fault));
+  EXPECT_TRUE(now().error);
 }
 
 }  // namespace
