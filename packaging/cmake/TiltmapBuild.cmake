@@ -37,10 +37,10 @@ if(TILTMAP_COVERAGE)
   target_link_options(tiltmap_build_flags INTERFACE --coverage)
 endif()
 
-# tiltmap_add_tests(NAME SOURCES... [LINKS lib...] [OWN_MAIN]): one GoogleTest program, its tests known to CTest.
-# OWN_MAIN: a main() is among the sources.
+# tiltmap_add_tests(NAME SOURCES... [LINKS lib...] [OWN_MAIN] [ALONE]): one GoogleTest program, its tests known to CTest.
+# OWN_MAIN: a main() is among the sources. ALONE: with nothing beside it, where instruments are emulated in real time.
 function(tiltmap_add_tests name)
-  cmake_parse_arguments(ARG "OWN_MAIN" "TIMEOUT" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "OWN_MAIN;ALONE" "TIMEOUT" "SOURCES;LINKS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
@@ -54,6 +54,6 @@ function(tiltmap_add_tests name)
   target_compile_definitions(${name} PRIVATE TILTMAP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/bin)
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
-    PROPERTIES TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT} RUN_SERIAL ${ARG_ALONE} ENVIRONMENT
       "TILTMAP_PROGRAM=$<TARGET_FILE:tiltmap>;LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/lsan.supp:print_suppressions=0")
 endfunction()

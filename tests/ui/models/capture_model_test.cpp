@@ -179,16 +179,16 @@ TEST_F(CaptureModelTest, TheEventLoopGoesOnWhileADeviceIsSilent) {
   };
   const auto never = [] { return false; };
   model.connectTo(emulated(1.0));
-  watch([&] { return model.state() == StationState::Ready; }, 30000);
+  watch([&] { return model.state() == StationState::Ready; }, 90000);
   ASSERT_EQ(model.state(), StationState::Ready) << model.sentence().toStdString();
   const double connecting_ms = std::exchange(worst_ms, 0.0);
   model.order("silent");
-  watch([&] { return model.state() == StationState::Reconnecting; }, 30000);
+  watch([&] { return model.state() == StationState::Reconnecting; }, 90000);
   ASSERT_EQ(model.state(), StationState::Reconnecting);
   watch(never, 3000);
   const double silent_ms = std::exchange(worst_ms, 0.0);
   model.stop();
-  watch([&] { return model.state() == StationState::Fault; }, 30000);
+  watch([&] { return model.state() == StationState::Fault; }, 90000);
   ASSERT_EQ(model.state(), StationState::Fault);
   EXPECT_NE(model.sentence().indexOf("stopped sending"), -1) << model.sentence().toStdString();
   std::printf("longest turn of the event loop: %.1f ms while connecting, %.1f ms while a device is silent\n",

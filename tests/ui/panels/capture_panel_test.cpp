@@ -39,7 +39,9 @@ class CapturePanelTest : public WindowTest {
   QString title() { return panel->banner().title(); }
   QString sentence() { return panel->banner().sentence(); }
   ::testing::AssertionResult comes(StationState state) {
-    if (waitUntil([&] { return model().state() == state; })) {
+    // At the instruments' own speed it takes 15 s to find rates and home.
+    for (int patience = 0; patience < 3; ++patience) {
+      if (!waitUntil([&] { return model().state() == state; })) continue;
       settle();
       return ::testing::AssertionSuccess();
     }
