@@ -88,7 +88,7 @@ QString CaptureModel::sentence() const {
   QString text = capitalised(qt(now_.doing));
   if (!text.isEmpty()) text += ".";
   if (state() == StationState::Scanning && verdict_->estimate())
-    text += " Place: " + verdict_->estimate()->sentence + ".";
+    text += " " + capitalised(verdict_->estimate()->sentence) + ".";
   return text;
 }
 

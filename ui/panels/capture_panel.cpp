@@ -77,7 +77,8 @@ CapturePanel::CapturePanel(const PanelContext& context, QWidget* parent)
   column->addWidget(makeFigures());
   column->addWidget(makeButtons());
   setFocusProxy(start_);
-  setMinimumWidth(300);
+  column->setSizeConstraint(QLayout::SetNoConstraint);
+  setMinimumSize(minimumSizeHint());
   makeTall(*this);
   stop_->setMinimumHeight(56);
   start_->setMinimumHeight(56);
@@ -100,9 +101,8 @@ QWidget* CapturePanel::makeFigures() {
   progress_->setObjectName("capture-progress");
   progress_->setAccessibleName("Lines taken");
   progress_->setRange(0, 1000);
-  grid->addWidget(progress_, 0, 0, 1, 4);
+  grid->addWidget(progress_, 0, 0, 1, 2);
   const std::pair<const char*, const char*> rows[] = {
-      {"Lines", "Lines of the sweep that are in the project"},
       {"Time left", "Until the sweep is done, as fast as it went so far"},
       {"Dead cells", "Share of the beams that brought no point"},
       {"Taken again", "Lines that came damaged, or while the tilt moved; how often an instrument was lost"},
@@ -117,20 +117,13 @@ QWidget* CapturePanel::makeFigures() {
     value->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     for (QLabel* one : {label, value}) one->setToolTip(tip);
     figures_.push_back(value);
-    // The long ones have a row to themselves.
-    if (k < 4) {
-      grid->addWidget(label, 1 + k / 2, 2 * (k % 2));
-      grid->addWidget(value, 1 + k / 2, 2 * (k % 2) + 1);
-    } else {
-      grid->addWidget(label, k - 1, 0);
-      grid->addWidget(value, k - 1, 1, 1, 3);
-    }
+    grid->addWidget(label, 1 + k, 0);
+    grid->addWidget(value, 1 + k, 1);
     ++k;
   }
   grid->setColumnStretch(1, 1);
-  grid->setColumnStretch(3, 1);
   place_ = wrappedLabel(box, "capture-place");
-  grid->addWidget(place_, 5, 0, 1, 4);
+  grid->addWidget(place_, 1 + k, 0, 1, 2);
   return box;
 }
 
@@ -139,7 +132,7 @@ QWidget* CapturePanel::makeButtons() {
   auto* row = new QHBoxLayout(box);
   row->setContentsMargins(8, 4, 8, 8);
   row->setSpacing(8);
-  start_ = new QPushButton("Start sweep", box);
+  start_ = new QPushButton("Start", box);
   start_->setObjectName("capture-start");
   start_->setAccessibleName("Start the sweep of the next stop");
   connect(start_, &QPushButton::clicked, this, &CapturePanel::start);
@@ -162,13 +155,10 @@ QWidget* CapturePanel::makeButtons() {
 
 // Red in every theme; white on it is 6.6 : 1.
 void CapturePanel::paintStop() {
-  const QColor red("#b71c1c");
-  QPalette palette = this->palette();
-  for (const auto group : {QPalette::Active, QPalette::Inactive, QPalette::Disabled}) {
-    palette.setColor(group, QPalette::Button, red);
-    palette.setColor(group, QPalette::ButtonText, Qt::white);
-  }
-  stop_->setPalette(palette);
+  stop_->setStyleSheet(
+      "QPushButton { background: #b71c1c; color: white; border: 2px solid #7f0000; border-radius: 4px; }"
+      "QPushButton:focus { border-color: palette(text); }"
+      "QPushButton:pressed { background: #7f0000; }");
   QFont bold = font();
   bold.setBold(true);
   start_->setFont(bold);
@@ -190,15 +180,15 @@ void CapturePanel::refresh() {
   const StationSweep& sweep = model_.now().sweep;
   progress_->setValue(sweep.number == 0 ? 0 : 1000 * sweep.rows_taken / std::max(1, sweep.geometry.rows));
   progress_->setFormat(model_.linesText());
-  const QString texts[] = {model_.linesText(),   model_.leftText(),      model_.deadText(),
-                           model_.retriesText(), model_.tiltErrorText(), model_.diskText()};
+  const QString texts[] = {model_.leftText(), model_.deadText(), model_.retriesText(), model_.tiltErrorText(),
+                           model_.diskText()};
   for (std::size_t k = 0; k < figures_.size(); ++k) figures_[k]->setText(texts[k].isEmpty() ? "–" : texts[k]);
   QString place;
   const CaptureVerdict& verdict = model_.verdict();
   if (const auto& told = verdict.judgement()) {
     if (told->overlap > 0.0) place = QString("Overlap %1 %. ").arg(100.0 * told->overlap, 0, 'f', 0);
     place += told->weak_directions;
-  } else if (const auto& so_far = verdict.estimate()) {
+  } else if (const auto& so_far = verdict.estimate(); so_far && so_far->overlap > 0.0) {
     place =
         QString("Overlap so far %1 % (%2 lines).").arg(100.0 * so_far->overlap, 0, 'f', 0).arg(so_far->lines);
   }

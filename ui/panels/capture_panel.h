@@ -32,6 +32,8 @@ class CapturePanel : public QWidget {
 
   // What a gloved finger hits, in pixels of an ordinary screen.
   static constexpr int kTarget_px = 44;
+  // Lower than its parts ask for: behind another tab it must not ask for more than a small screen has.
+  QSize minimumSizeHint() const override { return {340, 320}; }
 
  private:
   QWidget* makeFigures();

@@ -38,11 +38,12 @@ std::vector<DockPlace> delivered(Perspective perspective) {
               {"project-tree", Left, "view3d", 0.17},
               {"capture", Right, "view3d", 0.33},
               {"capture-matrix", Bottom, "view3d", 0.42},
-              {"capture-line", Right, "capture-matrix", 0.42},
-              {"depth-image", Tab, "capture-matrix", 0},
-              {"photographs", Tab, "capture-matrix", 0},
+              {"capture-line", Right, "capture-matrix", 0.45},
               {"log", Tab, "capture-matrix", 0},
-              {"details", Tab, "capture-matrix", 0}};
+              // They ask for more width than half of the middle has.
+              {"depth-image", Tab, "view3d", 0},
+              {"photographs", Tab, "view3d", 0},
+              {"details", Tab, "project-tree", 0}};
     case Perspective::Inspect:
       return {{"view3d", Left, "", 0},
               {"project-tree", Left, "view3d", 0.225},

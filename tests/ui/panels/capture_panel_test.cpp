@@ -3,8 +3,10 @@
 
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QProgressBar>
 #include <QPushButton>
 #include <QTabWidget>
+#include <cstdlib>
 
 #include <gtest/gtest.h>
 
@@ -61,12 +63,19 @@ class CapturePanelTest : public WindowTest {
     settle();
   }
   bool isEnabled(const QString& name) { return find(name)->isEnabled(); }
+  // To be looked at: each state as a picture, where TILTMAP_PICTURES names a folder.
+  void take(const char* name) {
+    settle();
+    if (const char* where = std::getenv("TILTMAP_PICTURES")) {
+      EXPECT_TRUE(window->grab().save(QString("%1/%2.png").arg(where, name)));
+    }
+  }
   void expectStopIsThere() {
     auto* stop = find<QPushButton>("capture-stop");
     EXPECT_TRUE(stop->isVisible() && stop->isEnabled());
     EXPECT_GE(stop->height(), 44);
-    const QColor ground = stop->palette().color(QPalette::Button);
-    EXPECT_GT(ground.red(), 2 * (ground.green() + ground.blue()));
+    const QColor ground = stop->grab().toImage().pixelColor(12, 12);
+    EXPECT_GT(ground.red(), 2 * (ground.green() + ground.blue())) << ground.name().toStdString();
     EXPECT_FALSE(title().isEmpty());
     EXPECT_FALSE(sentence().isEmpty()) << title().toStdString();
   }
@@ -75,6 +84,7 @@ class CapturePanelTest : public WindowTest {
 };
 
 TEST_F(CapturePanelTest, GoesThroughEveryStateAndStopIsAlwaysThere) {
+  take("idle");
   EXPECT_EQ(title(), "Not connected");
   EXPECT_FALSE(isEnabled("capture-start"));
   EXPECT_NE(find("capture-start")->toolTip().indexOf("connected"), -1);
@@ -85,12 +95,14 @@ TEST_F(CapturePanelTest, GoesThroughEveryStateAndStopIsAlwaysThere) {
   connectByMouse(1.0);
   ASSERT_TRUE(comes(StationState::Connecting));
   EXPECT_EQ(title(), "Connecting");
+  take("connecting");
   expectStopIsThere();
   click("capture-stop");
   ASSERT_TRUE(comes(StationState::Idle));
 
   connected();
   EXPECT_EQ(title(), "Ready");
+  take("ready");
   EXPECT_TRUE(isEnabled("capture-start"));
   EXPECT_NE(find<QLabel>("capture-instruments")->text().indexOf("LMS291"), -1);
   expectStopIsThere();
@@ -101,9 +113,10 @@ TEST_F(CapturePanelTest, GoesThroughEveryStateAndStopIsAlwaysThere) {
   ASSERT_TRUE(comes(StationState::Verdict));
   ASSERT_TRUE(waitUntil([&] { return model().verdict().judgement().has_value(); }));
   settle();
+  take("verdict");
   EXPECT_TRUE(title() == "Move on" || title() == "Rescan" || title() == "Closer") << title().toStdString();
   expectStopIsThere();
-  EXPECT_EQ(find<QLabel>("capture-figure-0")->text(), "24 of 24");
+  EXPECT_EQ(find<QProgressBar>("capture-progress")->text(), "24 of 24");
 }
 
 TEST_F(CapturePanelTest, AFaultSaysWhatToDoAndConnectingAgainHelps) {
@@ -111,11 +124,13 @@ TEST_F(CapturePanelTest, AFaultSaysWhatToDoAndConnectingAgainHelps) {
   model().order("silent");
   ASSERT_TRUE(comes(StationState::Reconnecting));
   EXPECT_EQ(title(), "An instrument is lost");
+  take("reconnecting");
   EXPECT_NE(sentence().indexOf("What to do"), -1);
   expectStopIsThere();
   press(QKeySequence(Qt::Key_F12));
   ASSERT_TRUE(comes(StationState::Fault));
   EXPECT_EQ(title(), "Fault");
+  take("fault");
   EXPECT_NE(sentence().indexOf("What to do"), -1) << sentence().toStdString();
   EXPECT_FALSE(isEnabled("capture-start"));
   expectStopIsThere();
@@ -155,6 +170,31 @@ TEST_F(CapturePanelTest, StopInASweepKeepsTheLinesAndGoOnTakesTheRest) {
   ASSERT_TRUE(comes(StationState::Verdict));
   settle();
   EXPECT_FALSE(find("capture-resume")->isVisible());
+}
+
+// As slow as real instruments are: what a sweep looks like on its way.
+TEST_F(CapturePanelTest, ASweepUnderWayIsSeenAndStopped) {
+  connected(1.0);
+  model().parameters().setValue("lines", 101LL);
+  click("capture-start");
+  ASSERT_TRUE(waitUntil([&] { return model().now().sweep.rows_taken >= 12; }));
+  EXPECT_EQ(title(), "Scanning");
+  EXPECT_NE(find<QLabel>("capture-figure-0")->text(), "–");
+  EXPECT_FALSE(isEnabled("capture-start"));
+  take("scanning");
+  expectStopIsThere();
+  press(QKeySequence(Qt::Key_F12));
+  ASSERT_TRUE(comes(StationState::Ready));
+  EXPECT_GE(snapshot().scans()[0].lines, 12);
+  show(1);
+  click("capture-jog-up-far");
+  ASSERT_TRUE(comes(StationState::Moving));
+  EXPECT_EQ(title(), "The tilt moves");
+  take("moving");
+  click("capture-stop");
+  ASSERT_TRUE(comes(StationState::Ready));
+  show(2);
+  take("next-stop");
 }
 
 TEST_F(CapturePanelTest, TheTiltIsMovedByItsButtons) {
@@ -221,6 +261,7 @@ TEST_F(CapturePanelTest, EverythingThatIsPressedIsTallAndNothingIsCutOff) {
       }
       EXPECT_GE(tall, 2);
       for (const std::string& text : cutOff(*panel)) ADD_FAILURE() << page << " cut off: " << text;
+      EXPECT_TRUE(window->rect().contains(QRect(panel->mapTo(window, QPoint()), panel->size())));
       auto* scroll = find<QTabWidget>("capture-tabs")->currentWidget();
       EXPECT_GT(scroll->height(), 150) << "room for the page";
     }
