@@ -3,7 +3,9 @@
 #include <QEvent>
 #include <QMouseEvent>
 #include <QPolygonF>
+#include <QTimer>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <qwt_legend.h>
 #include <qwt_plot.h>
 #include <qwt_plot_canvas.h>
@@ -12,7 +14,6 @@
 #include <qwt_plot_histogram.h>
 #include <qwt_plot_layout.h>
 #include <qwt_plot_marker.h>
-#include <qwt_plot_rescaler.h>
 #include <qwt_samples.h>
 #include <qwt_scale_engine.h>
 #include <qwt_scale_widget.h>
@@ -34,7 +35,7 @@ struct Plot::Parts {
   QwtPlotGrid* grid = nullptr;
   QwtPlotMarker* mark = nullptr;
   QwtLegend* legend = nullptr;
-  QwtPlotRescaler* rescaler = nullptr;
+  bool equal_scales = false;
   QVector<QwtPlotSeriesItem*> series;
   QVector<bool> is_dots;
   bool legend_changed = false;
@@ -63,6 +64,7 @@ Plot::Plot(const QString& name, const QString& accessible, QWidget* parent)
   flat->setPaintAttribute(QwtPlotCanvas::BackingStore, false);
   p.plot->setCanvas(flat);
   flat->installEventFilter(this);
+  parts_->plot->installEventFilter(this);
   p.grid = new QwtPlotGrid;
   p.grid->attach(p.plot);
   p.mark = new QwtPlotMarker;
@@ -137,18 +139,25 @@ void Plot::setLogarithmic(Axis axis) {
 }
 
 void Plot::setEqualScales() {
-  parts_->rescaler =
-      new QwtPlotRescaler(parts_->plot->canvas(), QwtPlot::xBottom, QwtPlotRescaler::Fitting);
-  parts_->rescaler->setAspectRatio(QwtPlot::yLeft, 1.0);
+  parts_->equal_scales = true;
 }
 
 void Plot::fitSeries() {
   QPolygonF all;
   for (int k = 0; k < parts_->series.size(); ++k) all += points(k);
   const QRectF room = all.isEmpty() ? QRectF(-10.0, -5.0, 20.0, 10.0) : all.boundingRect();
-  parts_->rescaler->setIntervalHint(QwtPlot::xBottom, QwtInterval(room.left(), room.right()));
-  parts_->rescaler->setIntervalHint(QwtPlot::yLeft, QwtInterval(room.top(), room.bottom()));
-  parts_->rescaler->rescale();
+  // The numbers beside the axes take of the canvas' room: twice, so that they are known.
+  for (int pass = 0; pass < 2; ++pass) {
+    const QSizeF size = parts_->plot->canvas()->size();
+    if (size.isEmpty()) return;
+    const double per_px = 1.04 * std::max(room.width() / size.width(), room.height() / size.height());
+    const QPointF half(0.5 * per_px * size.width(), 0.5 * per_px * size.height());
+    parts_->plot->setAxisScale(QwtPlot::xBottom, room.center().x() - half.x(), room.center().x() + half.x());
+    parts_->plot->setAxisScale(QwtPlot::yLeft, room.center().y() - half.y(), room.center().y() + half.y());
+    parts_->plot->updateAxes();
+    parts_->plot->updateLayout();
+  }
+  parts_->plot->replot();
 }
 
 std::pair<double, double> Plot::range(Axis axis) const {
@@ -223,7 +232,7 @@ void Plot::redraw() {
   // A legend that entries come to while its plot is hidden leaves out those that were there before: it is
   // made anew.
   if (std::exchange(parts_->legend_changed, false) && parts_->legend) showLegend();
-  if (parts_->rescaler) fitSeries();
+  if (parts_->equal_scales) fitSeries();
 }
 
 QVector<QPointF> Plot::points(int series) const {
@@ -263,6 +272,9 @@ bool Plot::eventFilter(QObject* watched, QEvent* event) {
     if (mouse->button() == Qt::LeftButton)
       Q_EMIT clickedAt(parts_->plot->invTransform(QwtPlot::xBottom, mouse->pos().x()));
   }
+  // Once the canvas has its size. It changes with the numbers beside the axes as well, and that is no reason.
+  if (watched == parts_->plot && event->type() == QEvent::Resize && parts_->equal_scales)
+    QTimer::singleShot(0, this, [this] { fitSeries(); });
   return QWidget::eventFilter(watched, event);
 }
 

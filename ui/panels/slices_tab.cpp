@@ -34,8 +34,8 @@ SlicePlot::SlicePlot(const PanelContext& context, QWidget* parent)
     : StepperPlot(context, "stepper-slices", "Slices of both scans from above", parent),
       study_(StudyModel::of(model_)),
       fixed_(addDots("fixed")),
-      by_scan_(addDots("by whole scans")),
-      by_slice_(addDots("by its slice")) {
+      by_scan_(addDots("whole scans")),
+      by_slice_(addDots("its slice")) {
   setToolTip(
       "The slices from above: the fixed one, and the moving one where its slice and where the whole scans "
       "put it");
@@ -86,7 +86,7 @@ SlicesTab::SlicesTab(const PanelContext& context, QWidget* parent)
   label->setBuddy(height_);
   // Beside the plot and not above it: the panel is low, and the plot needs what height there is.
   auto* side = new QWidget(this);
-  side->setFixedWidth(30 * fontMetrics().averageCharWidth());
+  side->setFixedWidth(36 * fontMetrics().averageCharWidth());
   auto* controls = new QGridLayout(side);
   controls->setContentsMargins(8, 8, 8, 4);
   controls->setSpacing(6);

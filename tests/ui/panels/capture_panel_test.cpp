@@ -187,6 +187,8 @@ TEST_F(CapturePanelTest, ASweepUnderWayIsSeenAndStopped) {
   ASSERT_TRUE(comes(StationState::Ready));
   EXPECT_GE(snapshot().scans()[0].lines, 12);
   show(1);
+  // Stop leaves it where it is, which has to be read first.
+  ASSERT_TRUE(waitUntil([&] { return model().now().tilt_rad.has_value(); }));
   click("capture-jog-up-far");
   ASSERT_TRUE(comes(StationState::Moving));
   EXPECT_EQ(title(), "The tilt moves");
