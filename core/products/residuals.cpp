@@ -198,6 +198,7 @@ std::uint64_t ProjectResiduals::fingerprint(const ProjectSnapshot& snapshot,
     const ScanEntry& entry = snapshot.scans().at(index);
     mixIn(hash, static_cast<std::uint64_t>(entry.id));
     mixIn(hash, static_cast<std::uint64_t>(entry.matrix));
+    mixIn(hash, static_cast<std::uint64_t>(entry.lines));
     mixIn(hash, static_cast<std::uint64_t>(entry.geometry_id));
     for (int i = 0; i < 3; ++i) mixIn(hash, world_from_scan[index].translation()[i]);
     for (int i = 0; i < 4; ++i) mixIn(hash, world_from_scan[index].quaternion().coeffs()[i]);

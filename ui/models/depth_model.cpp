@@ -97,7 +97,7 @@ void DepthModel::update() {
   auto work = std::make_shared<Work>();
   work->entry = *scan;
   const bool same = matrix_ && matrix_->scan == scan->id && matrix_->matrix == scan->matrix &&
-                    matrix_->geometry_id == scan->geometry_id;
+                    matrix_->geometry_id == scan->geometry_id && matrix_->lines == scan->lines;
   if (same) work->matrix = matrix_;
   bool complete = same;
   for (std::size_t k = 0; k < sides_.size(); ++k) {
@@ -147,6 +147,7 @@ void DepthModel::perform(Work& work, const std::stop_token& stop) {
     matrix->scan = work.entry.id;
     matrix->matrix = work.entry.matrix;
     matrix->geometry_id = work.entry.geometry_id;
+    matrix->lines = work.entry.lines;
     matrix->geometry = work.entry.geometry;
     matrix->image = *image;
     matrix->points = cellPoints(*matrix->image, matrix->geometry);

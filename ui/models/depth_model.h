@@ -53,6 +53,7 @@ class DepthModel : public QObject {
   struct Matrix {
     ScanId scan = 0;
     std::int64_t matrix = 0, geometry_id = 0;
+    int lines = 0;  // it grows while it is captured
     ScannerGeometry geometry;
     RangeImagePtr image;
     std::vector<Eigen::Vector3d> points, normals;

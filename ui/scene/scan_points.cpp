@@ -125,6 +125,7 @@ Result<ScanPoints> scanPointsOf(const ScanEntry& scan, bool reduced) {
   ScanPoints result;
   result.scan = scan.id;
   result.matrix = scan.matrix;
+  result.lines = scan.lines;
   result.geometry = scan.geometry_id;
   result.reduced = reduced;
   result.columns = matrix.columns();
@@ -149,11 +150,12 @@ Result<ScanPoints> scanPointsOf(const ScanEntry& scan, bool reduced) {
 }
 
 PointsKey keyOf(const PointsWanted& wanted) {
-  return {wanted.scan.id, wanted.scan.matrix, wanted.scan.geometry_id, wanted.reduced, wanted.normals};
+  return {wanted.scan.id,          wanted.scan.matrix, wanted.scan.lines,
+          wanted.scan.geometry_id, wanted.reduced,     wanted.normals};
 }
 
 PointsKey keyOf(const ScanPoints& points) {
-  return {points.scan, points.matrix, points.geometry, points.reduced, points.with_normals};
+  return {points.scan, points.matrix, points.lines, points.geometry, points.reduced, points.with_normals};
 }
 
 Result<ScanPoints> readPoints(const PointsWanted& wanted, const std::stop_token& stop) {

@@ -27,6 +27,7 @@ std::string sceneColouringTitle(SceneColouring colouring);  // "Height (m)"
 struct ScanPoints {
   ScanId scan = 0;
   std::int64_t matrix = 0;  // identity of what they were made from
+  int lines = 0;            // that it held; it grows while it is captured
   std::int64_t geometry = 0;
   bool reduced = false;
   bool with_normals = false;
@@ -59,6 +60,7 @@ struct PointsWanted {
 struct PointsKey {
   ScanId scan = 0;
   std::int64_t matrix = 0;
+  int lines = 0;
   std::int64_t geometry = 0;
   bool reduced = false;
   bool normals = false;

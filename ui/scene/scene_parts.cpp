@@ -48,8 +48,9 @@ std::vector<Vector3d> Scene::Parts::extentPoints(const std::vector<ScanId>& scan
 bool Scene::Parts::has(std::size_t index) const {
   const PointsKey key = keyOf(wanted(index));
   const SceneCloud* cloud = cloudOf(key.scan);
-  return cloud && cloud->points.matrix == key.matrix && cloud->points.geometry == key.geometry &&
-         cloud->points.reduced == key.reduced && (!key.normals || cloud->points.with_normals);
+  return cloud && cloud->points.matrix == key.matrix && cloud->points.lines == key.lines &&
+         cloud->points.geometry == key.geometry && cloud->points.reduced == key.reduced &&
+         (!key.normals || cloud->points.with_normals);
 }
 
 // At once, on all cores. Scans that cannot be read are not drawn.

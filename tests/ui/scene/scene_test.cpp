@@ -98,6 +98,31 @@ class SceneTest : public ::testing::Test {
   std::unique_ptr<Scene> scene;
 };
 
+// As while it is captured: lines are added to the same matrix.
+TEST_F(SceneTest, AScanThatGrowsIsSeenGrowing) {
+  Scan begun = wallScan(Pose::planar(16, 0, 0), "next");
+  const RangeImagePtr whole = std::exchange(begun.image, nullptr);
+  const Change change = must(project->apply({"begin", {AddScan{begun, {}, {}, {}, {}}}, nullptr, {}, {}}));
+  const auto drawnPoints = [&] {
+    scene->show(snapshot(), Stage::Odometry);
+    drawn();
+    return scene->pointsDrawn();
+  };
+  std::size_t before = drawnPoints();
+  for (int row = 38; row < 42; ++row) {
+    ScanLine line;
+    line.tilt_rad = begun.geometry.tiltOfRow(row);
+    for (int column = 0; column < whole->columns(); ++column) {
+      line.range_m.push_back(whole->range(row, column));
+      line.code.push_back(whole->code(row, column));
+    }
+    must(project->appendLine(change.scans_added.at(0), row, line));
+    const std::size_t now = drawnPoints();
+    EXPECT_EQ(now, before + static_cast<std::size_t>(whole->columns())) << row;
+    before = now;
+  }
+}
+
 TEST_F(SceneTest, ScansStandInTheirPlacesInTheirColours) {
   EXPECT_TRUE(scene->show(snapshot(), Stage::Odometry).empty());
   const RgbImage picture = drawn();
