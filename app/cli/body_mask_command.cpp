@@ -23,23 +23,8 @@ std::string bodyText(const nlohmann::json& report) {
 }  // namespace
 
 void addBodyMask(CLI::App& app, Chosen& chosen) {
-  auto* command = app.add_subcommand("body-mask", "Find the machine's own body in its scans and keep it out");
-  auto path = std::make_shared<std::string>();
-  command->add_option("project", *path, "The project")->required();
-  auto flags = ParameterFlags::addTo(*command, operations().find("body-mask")->parameters());
-  command->callback([path, flags, &chosen] {
-    chosen.body = [path, flags](Context& context) -> int {
-      auto values = flags->values();
-      if (!values) return context.console.wrongUsage(values.error());
-      if (const auto out = values->find("out"); out != values->end())
-        if (Status status = checkOutput(std::get<std::string>(out->second), *path); !status)
-          return context.console.failed(status.error());
-      const auto apply = values->find("apply");
-      const bool writes = apply != values->end() && std::get<bool>(apply->second);
-      return operationCommand(context, *path, "body-mask", "default", *values, bodyText,
-                              writes ? Access::ReadWrite : Access::ReadOnly);
-    };
-  });
+  addApplyingCommand(app, chosen, "body-mask", "Find the machine's own body in its scans and keep it out",
+                     bodyText);
 }
 
 }  // namespace tiltmap::cli

@@ -48,24 +48,9 @@ std::string calibrationTable(const nlohmann::json& report) {
 }  // namespace
 
 void addCalibrate(CLI::App& app, Chosen& chosen) {
-  auto* command = app.add_subcommand(
-      "calibrate", "Estimate the scanner's tilt zero, lever arm, mounting and range offset from the scans");
-  auto path = std::make_shared<std::string>();
-  command->add_option("project", *path, "The project")->required();
-  auto flags = ParameterFlags::addTo(*command, operations().find("calibrate")->parameters());
-  command->callback([path, flags, &chosen] {
-    chosen.body = [path, flags](Context& context) -> int {
-      auto values = flags->values();
-      if (!values) return context.console.wrongUsage(values.error());
-      if (const auto out = values->find("out"); out != values->end())
-        if (Status status = checkOutput(std::get<std::string>(out->second), *path); !status)
-          return context.console.failed(status.error());
-      const auto apply = values->find("apply");
-      const bool writes = apply != values->end() && std::get<bool>(apply->second);
-      return operationCommand(context, *path, "calibrate", "default", *values, calibrationTable,
-                              writes ? Access::ReadWrite : Access::ReadOnly);
-    };
-  });
+  addApplyingCommand(app, chosen, "calibrate",
+                     "Estimate the scanner's tilt zero, lever arm, mounting and range offset from the scans",
+                     calibrationTable);
 }
 
 }  // namespace tiltmap::cli

@@ -25,7 +25,8 @@ Result<OperationResult> runOperation(Context& context, Project& project, const s
   const auto& result = (*job)->result();
   if (!result) {
     if (result.error().what == kCancelled && project.snapshot()->revision() != before)
-      return fail("cancelled; what was stored until then is kept", project.path().string(), result.error().remedy);
+      return fail("cancelled; what was stored until then is kept", project.path().string(),
+                  result.error().remedy);
     if (result.error().what == kCancelled)
       return fail("cancelled; the project is as it was", project.path().string(),
                   "run the command again when you like");
@@ -81,6 +82,27 @@ Status checkOutput(const std::string& file, const std::string& project_path) {
 Result<SnapshotPtr> readProject(const std::string& path) {
   return Project::open(path, Access::ReadOnly).map([](const std::unique_ptr<Project>& project) {
     return project->snapshot();
+  });
+}
+
+void addApplyingCommand(CLI::App& app, Chosen& chosen, const std::string& operation, const std::string& help,
+                        const std::function<std::string(const nlohmann::json&)>& text) {
+  auto* command = app.add_subcommand(operation, help);
+  auto path = std::make_shared<std::string>();
+  command->add_option("project", *path, "The project")->required();
+  auto flags = ParameterFlags::addTo(*command, operations().find(operation)->parameters());
+  command->callback([path, flags, operation, text, &chosen] {
+    chosen.body = [path, flags, operation, text](Context& context) -> int {
+      auto values = flags->values();
+      if (!values) return context.console.wrongUsage(values.error());
+      if (const auto out = values->find("out"); out != values->end())
+        if (Status status = checkOutput(std::get<std::string>(out->second), *path); !status)
+          return context.console.failed(status.error());
+      const auto apply = values->find("apply");
+      const bool writes = apply != values->end() && std::get<bool>(apply->second);
+      return operationCommand(context, *path, operation, "default", *values, text,
+                              writes ? Access::ReadWrite : Access::ReadOnly);
+    };
   });
 }
 

@@ -22,6 +22,11 @@ int operationCommand(Context& context, const std::string& project_path, const st
                      Access access = Access::ReadWrite,
                      const std::function<nlohmann::json(const nlohmann::json&)>& as_json = {});
 
+// A whole command for an operation that finds something out, and changes the project only with --apply (its
+// parameters have `apply` and `out`): named like the operation, with the project and its parameters as flags.
+void addApplyingCommand(CLI::App& app, Chosen& chosen, const std::string& operation, const std::string& help,
+                        const std::function<std::string(const nlohmann::json&)>& text);
+
 // A command that makes one edit: opens the project, applies what `make` says, prints what was done.
 // `warnings` may be filled by `make`. JSON: {"done": title, "revision": n, "warnings": [..]}.
 int editCommand(Context& context, const std::string& project_path,

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/ranks.h"
+
 namespace tiltmap {
 
 namespace {
@@ -25,8 +27,7 @@ double bodyRange(const std::vector<RangeImagePtr>& images, std::size_t cell, con
   }
   if (near.empty() || static_cast<double>(near.size()) < settings.share * static_cast<double>(taken))
     return 0.0;
-  std::ranges::sort(near);
-  const double median = near[near.size() / 2];
+  const double median = medianOf(near);
   const auto alike = std::ranges::count_if(
       near, [&](double range) { return std::abs(range - median) <= settings.spread_m; });
   return static_cast<double>(alike) < settings.share * static_cast<double>(taken) ? 0.0 : median;

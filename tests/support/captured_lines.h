@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include "core/project/project.h"
 #include "hardware/capture/scanner_unit.h"
 #include "hardware/emulator/rig.h"
@@ -21,6 +23,24 @@ inline std::string differsFromSite(const RigView& view, const ScannerGeometry& g
              std::to_string(code[j]) + " instead of " + std::to_string(truth[j].range_m) + " m, code " +
              std::to_string(truth[j].code);
   return {};
+}
+
+// A captured stop of exp1, seed 7, has so many lines, and each is what the site gives at its tilt.
+inline void expectTrueScan(const ProjectSnapshot& snapshot, std::size_t index, int lines) {
+  const ScanEntry& entry = snapshot.scans().at(index);
+  EXPECT_EQ(entry.lines, lines);
+  const auto image = entry.image();
+  ASSERT_TRUE(image);
+  RigView view(*Experiment::make(ExperimentId::Exp1, 7), {});
+  view.moveTo(static_cast<int>(index));
+  for (int row = 0; row < entry.rows; ++row) {
+    if ((*image)->code(row, 0) == cell_code::kNotScanned) continue;
+    const std::size_t first = (*image)->index(row, 0);
+    EXPECT_EQ(differsFromSite(view, entry.geometry, (*image)->lineTilt(row),
+                              (*image)->data().range_m.data() + first, (*image)->data().code.data() + first),
+              "")
+        << "stop " << index << " row " << row;
+  }
 }
 
 // The next whole line of a scanner that sends, on a clock that costs nothing.

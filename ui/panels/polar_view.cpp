@@ -9,6 +9,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/ranks.h"
 #include "core/base/text.h"
 #include "core/products/depth_image.h"
 #include "ui/look/theme.h"
@@ -82,9 +83,7 @@ double PolarView::farthest() const {
   for (std::size_t k = 0; k < ranges_.size(); ++k)
     if (beamKind(codes_[k]) == BeamKind::Echo && std::isfinite(ranges_[k])) points.push_back(ranges_[k]);
   if (points.empty()) return 0.0;
-  const auto at = static_cast<std::ptrdiff_t>(kShareInside * static_cast<double>(points.size() - 1));
-  std::nth_element(points.begin(), points.begin() + at, points.end());
-  return static_cast<double>(points[static_cast<std::size_t>(at)]);
+  return static_cast<double>(quantileOf(points, kShareInside));
 }
 
 void PolarView::chooseRing(double farthest_m) {

@@ -39,21 +39,7 @@ class CaptureOperationTest : public ::testing::Test {
     return (*job)->result();
   }
   void expectTrueScan(std::size_t index, int lines) {
-    const ScanEntry& entry = project_->snapshot()->scans()[index];
-    EXPECT_EQ(entry.lines, lines);
-    const auto image = entry.image();
-    ASSERT_TRUE(image);
-    RigView view(*Experiment::make(ExperimentId::Exp1, 7), {});
-    view.moveTo(static_cast<int>(index));
-    for (int row = 0; row < entry.rows; ++row) {
-      if ((*image)->code(row, 0) == cell_code::kNotScanned) continue;
-      const std::size_t first = (*image)->index(row, 0);
-      EXPECT_EQ(test::differsFromSite(view, entry.geometry, (*image)->lineTilt(row),
-                                      (*image)->data().range_m.data() + first,
-                                      (*image)->data().code.data() + first),
-                "")
-          << "stop " << index << " row " << row;
-    }
+    test::expectTrueScan(*project_->snapshot(), index, lines);
   }
 
   test::TemporaryFolder folder_;
