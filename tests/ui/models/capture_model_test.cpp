@@ -115,7 +115,7 @@ TEST_F(CaptureModelTest, TwoStopsGoIntoTheProjectAndAreJudged) {
 
 TEST_F(CaptureModelTest, StoppedAndGoneOnWith) {
   makeProject(0);
-  connected();
+  connected(4.0);  // five seconds for the sweep: in memory it may be whole before it is stopped
   model.parameters().setValue("lines", 101LL);
   model.start({});
   ASSERT_TRUE(waitUntil([&] { return model.now().sweep.rows_taken >= 4; }));

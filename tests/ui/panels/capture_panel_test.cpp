@@ -155,7 +155,7 @@ TEST_F(CapturePanelTest, TwoStopsInARowByKeyboard) {
 
 TEST_F(CapturePanelTest, StopInASweepKeepsTheLinesAndGoOnTakesTheRest) {
   model().parameters().setValue("lines", 101LL);
-  connected();
+  connected(4.0);  // five seconds for the sweep: in memory it may be whole before it is stopped
   EXPECT_FALSE(find("capture-resume")->isVisible());
   click("capture-start");
   ASSERT_TRUE(waitUntil([&] { return model().now().sweep.rows_taken >= 5; }));
