@@ -67,7 +67,7 @@ ShortcutsDialog::ShortcutsDialog(const ActionRegistry& actions, QWidget* parent)
   layout->addWidget(search);
   layout->addWidget(table_, 1);
   layout->addWidget(buttons);
-  resize(720, 560);
+  resize(900, 560);
   connect(search, &QLineEdit::textChanged, this, &ShortcutsDialog::fill);
   connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::close);
   fill({});
