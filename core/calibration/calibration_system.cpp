@@ -168,6 +168,8 @@ Result<CalibrationSolution> solveCalibration(std::size_t count, std::span<const 
   for (std::size_t i = 1; i < count; ++i)
     solution.motions[i] = step.segment<6>(6 * (static_cast<Eigen::Index>(i) - 1));
 
+  if (free.empty()) return solution;
+
   const auto k = static_cast<Eigen::Index>(free.size());
   Eigen::MatrixXd ends = Eigen::MatrixXd::Zero(assembly.size(), k);
   ends.bottomRows(k).setIdentity();
