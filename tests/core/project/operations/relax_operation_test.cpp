@@ -121,7 +121,9 @@ TEST_F(RelaxOperationTest, ADisabledPairIsLeftOut) {
   ASSERT_TRUE(project_->apply(linkStateEdit(first, LinkState::Disabled)));
   const auto result = run("relax", {});
   ASSERT_TRUE(result);
-  for (const auto& link : nlohmann::json::parse(result->report_json)["links"])
+  const nlohmann::json report = nlohmann::json::parse(result->report_json);
+  ASSERT_FALSE(report["links"].empty());
+  for (const auto& link : report["links"])
     EXPECT_FALSE(link["fixed"] == 0 && link["moving"] == 1);
 }
 
