@@ -18,8 +18,9 @@ void addExport(CLI::App& app, Chosen& chosen) {
   std::vector<ParameterInfo> infos = operations().find("export")->parameters();
   std::erase_if(infos, [](const ParameterInfo& info) { return info.name == "file"; });
   auto flags = ParameterFlags::addTo(*command, infos);
-  auto raw = std::make_shared<bool>(false);
-  command->add_flag("--raw", *raw, "Every point (this is so unless told otherwise)")->excludes("--reduced");
+  command->add_flag("--raw")
+      ->description("Every point (this is so unless told otherwise)")
+      ->excludes("--reduced");
   command->callback([path, file, flags, &chosen] {
     chosen.body = [path, file, flags](Context& context) -> int {
       auto values = flags->values();
