@@ -64,17 +64,14 @@ void BackgroundWorker::start(Task task) {
         token = shared.running.get_token();
       }
       Done done = work(token);
-      QMetaObject::invokeMethod(
-          this,
-          [this, generation, done = std::move(done)] {
-            {
-              const std::lock_guard lock(shared_->mutex);
-              if (generation != shared_->generation) return;
-            }
-            busy_ = false;
-            if (done) done();
-          },
-          Qt::QueuedConnection);
+      deliveries_.post([this, generation, done = std::move(done)] {
+        {
+          const std::lock_guard lock(shared_->mutex);
+          if (generation != shared_->generation) return;
+        }
+        busy_ = false;
+        if (done) done();
+      });
     }
   });
 }

@@ -6,6 +6,8 @@
 #include <memory>
 #include <stop_token>
 
+#include "ui/models/deliveries.h"
+
 namespace tiltmap::ui {
 
 // Lives on the window's thread. The destructor asks what runs to stop, and waits for it.
@@ -30,6 +32,7 @@ class BackgroundWorker : public QObject {
 
  private:
   struct Shared;
+  Deliveries deliveries_;  // from the worker
   std::unique_ptr<Shared> shared_;
   bool busy_ = false;
 };

@@ -43,8 +43,7 @@ CaptureModel::CaptureModel(ProjectSession& session, JobQueue& jobs, ScanDisplay&
   station_ = std::make_shared<CaptureStation>([mailbox = mailbox_] {
     const std::lock_guard lock(mailbox->mutex);
     if (!mailbox->model || std::exchange(mailbox->posted, true)) return;
-    QMetaObject::invokeMethod(
-        mailbox->model, [model = mailbox->model] { model->read(); }, Qt::QueuedConnection);
+    mailbox->model->deliveries_.post([model = mailbox->model] { model->read(); });
   });
   form_ = makeStationCapture(station_);
   parameters_ = new ParameterModel(*form_, this);

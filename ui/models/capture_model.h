@@ -10,6 +10,7 @@
 
 #include "hardware/capture/capture_station.h"
 #include "ui/models/capture_verdict.h"
+#include "ui/models/deliveries.h"
 #include "ui/models/parameter_model.h"
 
 namespace tiltmap::ui {
@@ -109,6 +110,7 @@ class CaptureModel : public QObject {
   void showPlace();
   void storePlace();
 
+  Deliveries deliveries_;  // from the station
   ProjectSession& session_;
   JobQueue& jobs_;
   ScanDisplay& display_;

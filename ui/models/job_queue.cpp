@@ -98,9 +98,7 @@ Status JobQueue::begin(Entry& e) {
   auto posted = poll_posted_;
   // On the worker: one call of poll() at a time waits in the event loop, however often progress comes.
   const auto notify = [this, posted] {
-    if (!posted->exchange(true))
-      QMetaObject::invokeMethod(
-          this, [this] { poll(); }, Qt::QueuedConnection);
+    if (!posted->exchange(true)) deliveries_.post([this] { poll(); });
   };
   // The worker may notify before start() returns: poll() finds it by its phase.
   auto job = Job::start(*e.request.operation, snapshot, utf8(e.request.preset), e.request.values, notify);

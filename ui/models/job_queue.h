@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/project/job.h"
+#include "ui/models/deliveries.h"
 
 namespace tiltmap::ui {
 
@@ -110,6 +111,7 @@ class JobQueue : public QObject {
   void end(Entry& entry, JobPhase phase);
   void noteBusy();
 
+  Deliveries deliveries_;  // from the jobs
   ProjectSession& session_;
   std::deque<Entry> entries_;  // addresses stay
   int next_id_ = 1;

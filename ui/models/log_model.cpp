@@ -1,11 +1,15 @@
 #include "ui/models/log_model.h"
 
+#include <QThread>
+
 namespace tiltmap::ui {
 
 LogModel::LogModel(QObject* parent) : QAbstractTableModel(parent) {
   setLogListener([this](const LogLine& line) {
-    QMetaObject::invokeMethod(
-        this, [this, line] { append(line); }, Qt::AutoConnection);
+    if (QThread::currentThread() == thread())
+      append(line);
+    else
+      deliveries_.post([this, line] { append(line); });
   });
 }
 

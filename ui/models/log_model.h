@@ -4,6 +4,7 @@
 #include <QAbstractTableModel>
 #include <deque>
 
+#include "ui/models/deliveries.h"
 #include "ui/models/log.h"
 
 namespace tiltmap::ui {
@@ -29,6 +30,7 @@ class LogModel : public QAbstractTableModel {
  private:
   void append(const LogLine& line);
 
+  Deliveries deliveries_;  // from whatever thread logs
   std::deque<LogLine> lines_;
 };
 

@@ -90,9 +90,7 @@ JobRequest RelaxationModel::watched(JobRequest request) {
   if (request.operation->id() != "relax" || request.keep) return request;
   const auto notify = [mailbox = mailbox_] {
     const std::lock_guard lock(mailbox->mutex);
-    if (mailbox->model)
-      QMetaObject::invokeMethod(
-          mailbox->model, [model = mailbox->model] { model->readNews(); }, Qt::QueuedConnection);
+    if (mailbox->model) mailbox->model->deliveries_.post([model = mailbox->model] { model->readNews(); });
   };
   Run run;
   run.feed = std::make_shared<RelaxationFeed>(notify);

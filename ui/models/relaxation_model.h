@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/project/operations/relaxation_feed.h"
+#include "ui/models/deliveries.h"
 #include "ui/models/job_queue.h"
 #include "ui/models/scan_display.h"
 
@@ -104,6 +105,7 @@ class RelaxationModel : public QObject {
   void showPoses();
   void forget();
 
+  Deliveries deliveries_;  // from the jobs
   ProjectSession& session_;
   JobQueue& jobs_;
   ScanDisplay& display_;

@@ -116,11 +116,9 @@ void Residuals::startWorker() {
       if (!values && stop_token.stop_requested()) break;
       ResidualsPtr kept = values ? std::make_shared<const std::vector<float>>(std::move(*values)) : nullptr;
       std::string trouble = values ? std::string() : values.error().what;
-      QMetaObject::invokeMethod(
-          this, [=, this] { take(worker, task, kept, trouble); }, Qt::QueuedConnection);
+      deliveries_.post([=, this] { take(worker, task, kept, trouble); });
     }
-    QMetaObject::invokeMethod(
-        this, [=, this] { conclude(worker); }, Qt::QueuedConnection);
+    deliveries_.post([=, this] { conclude(worker); });
   });
   Q_EMIT computingChanged();
 }

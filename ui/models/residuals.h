@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/project/project_snapshot.h"
+#include "ui/models/deliveries.h"
 
 namespace tiltmap::ui {
 
@@ -58,6 +59,7 @@ class Residuals : public QObject {
   void take(const Worker* from, const Task& task, const ResidualsPtr& values, const std::string& trouble);
   void conclude(const Worker* from);
 
+  Deliveries deliveries_;  // from the worker
   const ProjectSession& session_;
   std::map<Stage, std::map<ScanId, std::uint64_t>> fingerprints_;  // of the snapshot that is shown
   std::map<Key, ResidualsPtr> known_;
