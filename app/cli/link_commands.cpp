@@ -1,10 +1,11 @@
 // tiltmap link list|judge|add|delete|disable|enable|accept|what-if P.tiltmap ...: what a person thinks of the
 // pairs that were registered.
+#include <algorithm>
 #include <cstdio>
 
 #include "app/cli/operation_runner.h"
 #include "core/base/text.h"
-#include "core/project/link_judgement.h"
+#include "core/project/judgement_json.h"
 #include "core/project/link_quality.h"
 #include "core/project/link_what_if.h"
 
@@ -26,85 +27,56 @@ Result<Link> linkOf(const ProjectSnapshot& snapshot, long long id) {
       snapshot.links().empty() ? "register pairs first" : "choose one that `tiltmap link list` shows");
 }
 
+// "5.2 mm" of one that is known, else a dash.
+std::string shown(const nlohmann::json& in, const char* name, double factor, int places) {
+  return in.is_object() && in.contains(name) ? fixedReal(factor * in[name].get<double>(), places) : "-";
+}
+
+constexpr const char* kTableHead =
+    "link  fixed  moving  verdict     overlap    fit  residual mm  moved cm  others mm   x  loop mm  ";
+
+// The figures of linkJson in a row.
+std::string tableRow(const nlohmann::json& link) {
+  const nlohmann::json &scans = link["by_scans"], &others = link["others"], &loop = link["loop"];
+  std::string overlap = "-";
+  if (scans.is_object())
+    overlap =
+        percentWords(std::max(scans["overlap_moving"].get<double>(), scans["overlap_fixed"].get<double>()));
+  char line[200];
+  std::snprintf(line, sizeof line, "%4lld  %5d  %6d  %-10s  %7s  %5s  %11s  %8s  %9s  %3s  %7s  ",
+                link["id"].get<long long>(), link["fixed"].get<int>(), link["moving"].get<int>(),
+                link["verdict"].get<std::string>().c_str(), overlap.c_str(),
+                scans.is_object() ? percentWords(scans["fit"].get<double>()).c_str() : "-",
+                shown(scans, "residual_m", 1000.0, 1).c_str(), shown(scans, "moved_m", 100.0, 1).c_str(),
+                shown(others, "off_m", 1000.0, 1).c_str(), shown(others, "deviations", 1.0, 1).c_str(),
+                shown(loop, "misclosure_m", 1000.0, 1).c_str());
+  return line;
+}
+
 int listLinks(Context& context, const LinkWords& words) {
   auto snapshot = readProject(words.project);
   if (!snapshot) return context.console.failed(snapshot.error());
   nlohmann::json list = nlohmann::json::array();
-  std::string text = "link  fixed  moving  overlap    rms mm  quality   state     origin     ended\n";
+  std::string text = kTableHead + std::string("state     origin     ended\n");
   const auto judged = judgeLinks(**snapshot, (*snapshot)->latestStage());
-  std::size_t place = 0;
-  for (const Link& link : (*snapshot)->links()) {
-    const std::size_t fixed = (*snapshot)->indexOf(link.fixed).value();
-    const std::size_t moving = (*snapshot)->indexOf(link.moving).value();
-    const LinkJudgement& judgement = judged[place++];
-    list.push_back({{"id", link.id},
-                    {"fixed", fixed},
-                    {"moving", moving},
-                    {"overlap", link.overlap},
-                    {"rms_m", link.rms_m},
-                    {"quality", linkQualityName(judgement.quality)},
-                    {"reason", judgement.reason},
-                    {"off_m", judgement.off.translation_m},
-                    {"off_deg", judgement.off.rotation_rad / kDegree},
-                    {"state", linkStateName(link.state)},
-                    {"origin", linkOriginName(link.origin)},
-                    {"succeeded", link.succeeded},
-                    {"stop_reason", link.stop_reason}});
-    char line[140];
-    std::snprintf(line, sizeof line, "%4lld  %5zu  %6zu  %5.0f %%  %8.2f  %-8s  %-8s  %-9s  ",
-                  static_cast<long long>(link.id), fixed, moving, 100.0 * link.overlap, 1000.0 * link.rms_m,
-                  linkQualityName(judgement.quality).c_str(), linkStateName(link.state).c_str(),
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    const Link& link = (*snapshot)->links()[k];
+    list.push_back(linkJson(**snapshot, link, judged[k]));
+    char line[40];
+    std::snprintf(line, sizeof line, "%-8s  %-9s  ", linkStateName(link.state).c_str(),
                   linkOriginName(link.origin).c_str());
-    text += line + link.stop_reason + "\n";
+    text += tableRow(list.back()) + line + link.stop_reason + "\n";
   }
   context.console.printJson({{"links", list}});
   context.console.print(list.empty() ? "there are no links" : text);
   return kDone;
 }
 
-nlohmann::json judgementJson(const PairJudgement& j) {
-  return {{"verdict", verdictName(j.verdict)},
-          {"reason", j.reason},
-          {"badness", j.badness},
-          {"overlap_fixed", j.overlap_fixed},
-          {"overlap_moving", j.overlap_moving},
-          {"fit", j.fit},
-          {"through", j.through},
-          {"residual_m", j.residual_m},
-          {"expected_m", j.expected_m},
-          {"excess_m", j.excess_m},
-          {"pull_m", j.pull_m},
-          {"moved_m", j.moved.translation_m},
-          {"moved_deg", j.moved.rotation_rad / kDegree},
-          {"deviation_m", {j.strength.right_m, j.strength.forward_m, j.strength.up_m}},
-          {"deviation_deg",
-           {j.strength.pitch_rad / kDegree, j.strength.roll_rad / kDegree, j.strength.heading_rad / kDegree}},
-          {"strength", j.strength_sentence}};
-}
-
-int judgeLinksByScans(Context& context, const LinkWords& words) {
-  const auto snapshot = readProject(words.project);
-  if (!snapshot) return context.console.failed(snapshot.error());
-  const auto judged = judgeLinkScans(**snapshot);
-  if (!judged) return context.console.failed(judged.error());
-  nlohmann::json list = nlohmann::json::array();
-  std::string text = "link  fixed  moving  overlap    fit  verdict   why\n";
-  for (const JudgedLink& one : *judged) {
-    const Link& link = *(*snapshot)->findLink(one.link);
-    const std::size_t fixed = (*snapshot)->indexOf(link.fixed).value();
-    const std::size_t moving = (*snapshot)->indexOf(link.moving).value();
-    nlohmann::json entry = judgementJson(one.judgement);
-    entry["id"] = link.id, entry["fixed"] = fixed, entry["moving"] = moving;
-    list.push_back(std::move(entry));
-    char line[80];
-    std::snprintf(line, sizeof line, "%4lld  %5zu  %6zu  %5.0f %%  %3.0f %%  %-8s  ",
-                  static_cast<long long>(link.id), fixed, moving, 100.0 * one.judgement.overlap(),
-                  100.0 * one.judgement.fit, verdictName(one.judgement.verdict).c_str());
-    text += line + one.judgement.reason + "\n";
-  }
-  context.console.printJson({{"links", list}});
-  context.console.print(list.empty() ? "there are no links" : text);
-  return kDone;
+std::string judgedText(const nlohmann::json& report) {
+  std::string text = kTableHead + std::string("why\n");
+  for (const nlohmann::json& link : report["links"])
+    text += tableRow(link) + link["reason"].get<std::string>() + "\n";
+  return text;
 }
 
 Result<ProjectEdit> accepted(const Link& link) {
@@ -165,11 +137,28 @@ int askWhatIf(Context& context, const LinkWords& words) {
 std::string addedText(const nlohmann::json& report) {
   char line[160];
   std::snprintf(line, sizeof line,
-                "linked %d to %d: overlap %.0f %%, rms %.2f mm, %.1f mm and %.3f deg from the start",
+                "linked %d to %d: overlap %.0f %%, rms %.2f mm, %.1f mm and %.3f deg from the start\n%s: ",
                 report["moving"].get<int>(), report["fixed"].get<int>(),
                 100.0 * report["overlap"].get<double>(), 1000.0 * report["rms_m"].get<double>(),
-                1000.0 * report["moved_m"].get<double>(), report["moved_deg"].get<double>());
-  return line;
+                1000.0 * report["moved_m"].get<double>(), report["moved_deg"].get<double>(),
+                report["verdict"].get<std::string>().c_str());
+  return line + report["verdict_reason"].get<std::string>();
+}
+
+void addJudge(CLI::App& parent, Chosen& chosen) {
+  auto* command = parent.add_subcommand(
+      "judge",
+      "Whether each link can be trusted, by its scans and the other links, and why; kept in the project");
+  auto path = std::make_shared<std::string>();
+  command->add_option("project", *path, "The project")->required();
+  auto flags = ParameterFlags::addTo(*command, operations().find("judge")->parameters());
+  command->callback([path, flags, &chosen] {
+    chosen.body = [path, flags](Context& context) -> int {
+      const auto values = flags->values();
+      if (!values) return context.console.wrongUsage(values.error());
+      return operationCommand(context, *path, "judge", "default", *values, judgedText);
+    };
+  });
 }
 
 // Fixed and moving are words here, all else flags of the operation.
@@ -208,12 +197,7 @@ void addLink(CLI::App& app, Chosen& chosen) {
   list->callback([words, &chosen] {
     chosen.body = [words](Context& context) -> int { return listLinks(context, *words); };
   });
-  auto* judge =
-      parent->add_subcommand("judge", "Whether each link can be trusted, by its two scans, and why");
-  judge->add_option("project", words->project, "The project")->required();
-  judge->callback([words, &chosen] {
-    chosen.body = [words](Context& context) -> int { return judgeLinksByScans(context, *words); };
-  });
+  addJudge(*parent, chosen);
   using MakeEdit = Result<ProjectEdit> (*)(const Link&);
   const auto add = [&](const char* name, const char* help, MakeEdit make) {
     auto* command = parent->add_subcommand(name, help);

@@ -1,55 +1,10 @@
 #include "core/multiview/pose_system.h"
 
 #include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
+
+#include "core/multiview/pose_assembly.h"
 
 namespace tiltmap {
-
-namespace {
-
-class Assembly {
- public:
-  explicit Assembly(std::size_t unknowns)
-      : right_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * unknowns))) {}
-
-  // Only the lower triangle is kept.
-  void add(int row, int column, const Matrix6d& block) {
-    for (int c = 0; c < 6; ++c)
-      for (int r = row == column ? c : 0; r < 6; ++r)
-        triplets_.emplace_back(6 * row + r, 6 * column + c, block(r, c));
-  }
-  void addRight(int row, const Vector6d& part) { right_.segment<6>(6 * row) += part; }
-  Eigen::SparseMatrix<double> matrix() const {
-    Eigen::SparseMatrix<double> result(right_.size(), right_.size());
-    result.setFromTriplets(triplets_.begin(), triplets_.end());
-    return result;
-  }
-  const Eigen::VectorXd& right() const { return right_; }
-
- private:
-  std::vector<Eigen::Triplet<double>> triplets_;
-  Eigen::VectorXd right_;
-};
-
-void addTerm(const PairTerm& term, int fixed, int moving, Assembly& assembly) {
-  const Matrix6d ad = adjoint(term.fixed_from_moving);
-  const Matrix6d h_ad = term.h * ad;
-  if (fixed >= 0) {
-    assembly.add(fixed, fixed, term.h);
-    assembly.addRight(fixed, -term.b);
-  }
-  if (moving >= 0) {
-    assembly.add(moving, moving, ad.transpose() * h_ad);
-    assembly.addRight(moving, ad.transpose() * term.b);
-  }
-  if (fixed < 0 || moving < 0) return;
-  if (fixed > moving)
-    assembly.add(fixed, moving, -h_ad);
-  else
-    assembly.add(moving, fixed, -h_ad.transpose());
-}
-
-}  // namespace
 
 Matrix6d adjoint(const Pose& pose) {
   const Eigen::Matrix3d rotation = pose.rotation();
@@ -86,7 +41,7 @@ Result<std::vector<Vector6d>> solvePoses(std::size_t count, const std::vector<ch
   std::vector<Vector6d> motions(count, Vector6d::Zero());
   if (unknowns == 0) return motions;
 
-  Assembly assembly(static_cast<std::size_t>(unknowns));
+  PoseAssembly assembly(static_cast<std::size_t>(unknowns));
   for (int i = 0; i < unknowns; ++i) assembly.add(i, i, damping * Matrix6d::Identity());
   for (const PairTerm& term : terms)
     addTerm(term, unknown[static_cast<std::size_t>(term.fixed)],

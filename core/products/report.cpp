@@ -6,6 +6,7 @@
 #include "core/base/text.h"
 #include "core/products/png.h"
 #include "core/products/report_style.h"
+#include "core/registration/pair_judgement.h"
 
 namespace tiltmap {
 
@@ -218,6 +219,53 @@ std::string pairsHtml(const std::vector<ReportPair>& pairs) {
   return "<section><h2>Registered pairs</h2>\n<div class=\"card\">" + table.html() + "</div></section>\n";
 }
 
+// Every link with what its verdict rests on; dashes where its scans were not held against each other.
+std::string trustHtml(const std::vector<ReportTrust>& links) {
+  if (links.empty()) return "";
+  HtmlTable table({{"Fixed", ""},
+                   {"Moving", ""},
+                   {"Verdict", "", false},
+                   {"Overlap", "%"},
+                   {"Fit", "%"},
+                   {"Residual", "mm"},
+                   {"Its noise", "mm"},
+                   {"Held within", "mm"},
+                   {"Moved", "mm"},
+                   {"Others", "mm"},
+                   {"Times", ""},
+                   {"Loop", "mm"},
+                   {"Why", "", false}});
+  const std::string none = "–";
+  for (const ReportTrust& link : links) {
+    const LinkJudgement& judged = link.judgement;
+    const PairJudgement* scans = judged.by_scans.get();
+    const LinkAgreement& others = judged.others;
+    const auto of_scans = [&](double value, int places) { return scans ? number(value, places) : none; };
+    const std::string verdict = linkQualityName(judged.quality);
+    const bool bad = judged.quality == LinkQuality::Bad || judged.quality == LinkQuality::Failed;
+    table.add({std::to_string(link.fixed), std::to_string(link.moving),
+               bad ? "<span class=\"bad\">" + verdict + "</span>" : verdict,
+               of_scans(scans ? 100.0 * scans->overlap() : 0.0, 0),
+               of_scans(scans ? 100.0 * scans->fit : 0.0, 0),
+               of_scans(scans ? 1000.0 * scans->residual_m : 0.0, 1),
+               of_scans(scans ? 1000.0 * scans->expected_m : 0.0, 1),
+               of_scans(scans ? 2000.0 * scans->strength.weakest_m : 0.0, 1),
+               of_scans(scans ? 1000.0 * scans->moved.translation_m : 0.0, 1),
+               others.supported ? number(1000.0 * others.off.translation_m, 1) : none,
+               others.supported ? number(others.deviations, 1) : none,
+               others.loop > 0 ? number(1000.0 * others.misclosure.translation_m, 1) : none,
+               escaped(judged.reason)});
+  }
+  return "<section><h2>Can the links be trusted?</h2>\n<p class=\"dim\">Each link's two scans held against "
+         "each "
+         "other, and the links against each other. Held within: two deviations in the weakest direction. "
+         "Others: "
+         "how far from the link the other links together put its scans, and times what both are uncertain "
+         "by. "
+         "Loop: how far the shortest loop of links through it is from closing.</p>\n<div class=\"card\">" +
+         table.html() + "</div></section>\n";
+}
+
 std::string movementsHtml(const ReportData& data) {
   if (data.movements.empty()) return "";
   HtmlTable table({{"Stop", ""}, {"Moved", "mm"}, {"Turned", "deg"}});
@@ -300,6 +348,7 @@ Result<std::string> reportHtml(const ReportData& data) {
   page += filesHtml(data.files);
   page += accuracyHtml(data.stages);
   page += pairsHtml(data.pairs);
+  page += trustHtml(data.trust);
   page += movementsHtml(data);
   page += stagesHtml(data.stages);
   page += parametersHtml(data.parameters);

@@ -10,6 +10,7 @@
 #include "core/products/evaluation.h"
 #include "core/products/localisation_table.h"
 #include "core/products/rgb_image.h"
+#include "core/project/link_quality.h"
 
 namespace tiltmap {
 
@@ -29,6 +30,13 @@ struct ReportPair {
   std::string stop_reason;
   double milliseconds = 0.0;
   bool succeeded = true;
+};
+
+// Whether a link can be trusted, as the window and `link list` tell it.
+struct ReportTrust {
+  std::size_t fixed = 0;
+  std::size_t moving = 0;
+  LinkJudgement judgement;
 };
 
 // How far the relaxation moved a stop from its pairwise pose.
@@ -61,6 +69,7 @@ struct ReportData {
   std::string picture_caption;
   std::vector<ReportStage> stages;  // in the order of processing
   std::vector<ReportPair> pairs;
+  std::vector<ReportTrust> trust;
   std::size_t relaxed_links = 0;  // pairs that the relaxation found beyond those
   std::vector<ReportMovement> movements;
   std::vector<ReportParameters> parameters;

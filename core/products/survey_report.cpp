@@ -34,6 +34,17 @@ std::vector<ReportPair> pairReports(const ProjectSnapshot& snapshot) {
   return pairs;
 }
 
+std::vector<ReportTrust> trustOf(const ProjectSnapshot& snapshot) {
+  std::vector<ReportTrust> trust;
+  const auto judged = judgeLinks(snapshot, snapshot.latestStage());
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    const Link& link = snapshot.links()[k];
+    const auto fixed = snapshot.indexOf(link.fixed), moving = snapshot.indexOf(link.moving);
+    if (fixed && moving) trust.push_back({*fixed, *moving, judged[k]});
+  }
+  return trust;
+}
+
 std::size_t relaxedLinks(const ProjectSnapshot& snapshot) {
   return static_cast<std::size_t>(std::ranges::count_if(
       snapshot.links(), [](const Link& link) { return link.stop_reason == kFoundByRelaxation; }));
@@ -98,6 +109,7 @@ ReportData reportOf(const ProjectSnapshot& snapshot, const std::string& survey_n
   for (const ScanEntry& scan : snapshot.scans()) report.point_count += scan.valid_cells;
   for (const Stage stage : snapshot.stages()) report.stages.push_back(stageReport(snapshot, stage));
   report.pairs = pairReports(snapshot);
+  report.trust = trustOf(snapshot);
   report.relaxed_links = relaxedLinks(snapshot);
   report.movements = movementsOf(snapshot);
   for (const JobRecord* job : lastJobs(snapshot)) {

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "core/project/project_edit.h"
+#include "core/registration/pair_judgement.h"
 
 namespace tiltmap {
 
@@ -39,13 +40,13 @@ void addChangedStages(const std::map<Stage, Pose>& a, const std::map<Stage, Pose
   }
 }
 
-// Of a link only its state ever changes.
+// Of a link only its state and its judgement ever change.
 void compareLinks(const ProjectSnapshot& before, const ProjectSnapshot& after, Change& change) {
   for (const Link& link : after.links()) {
     const Link* old = before.findLink(link.id);
     if (!old) {
       change.links_added.push_back(link.id);
-    } else if (old->state != link.state) {
+    } else if (old->state != link.state || !sameJudgement(old->judgement.get(), link.judgement.get())) {
       change.links_changed.push_back(link.id);
     }
   }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/project/image_store.h"
+#include "core/project/judgement_json.h"
 #include "core/project/snapshot_reader.h"
 
 namespace tiltmap {
@@ -161,8 +162,8 @@ void EditWriter::apply(const AddLinks& step) {
   Statement insert = database_.prepare(
       "INSERT INTO link(fixed_scan_id, moving_scan_id, x_m, y_m, z_m, qx, qy, qz, qw, iterations, "
       "correspondences, "
-      "rms_m, overlap, milliseconds, stop_reason, succeeded, origin, state, information) "
-      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "rms_m, overlap, milliseconds, stop_reason, succeeded, origin, state, information, judgement) "
+      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   for (const Link& link : step.links) {
     const ScanId fixed = resolved(link.fixed), moving = resolved(link.moving);
     const std::string where = "link " + std::to_string(fixed) + " - " + std::to_string(moving);
@@ -177,7 +178,38 @@ void EditWriter::apply(const AddLinks& step) {
     const Eigen::Quaterniond& q = link.fixed_from_moving.quaternion();
     insert.run(fixed, moving, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w(), link.iterations,
                link.correspondences, link.rms_m, link.overlap, link.milliseconds, link.stop_reason,
-               link.succeeded, linkOriginName(link.origin), linkStateName(link.state), information);
+               link.succeeded, linkOriginName(link.origin), linkStateName(link.state), information,
+               judgementText(link.judgement.get(), fixed, moving, link.fixed_from_moving));
+  }
+}
+
+std::optional<std::string> EditWriter::judgementText(const PairJudgement* judgement, ScanId fixed,
+                                                     ScanId moving, const Pose& fixed_from_moving) const {
+  if (!judgement) return std::nullopt;
+  Statement query = database_.prepare(
+      "SELECT matrix_id, geometry_id, lines FROM scan JOIN matrix ON matrix.id = matrix_id WHERE scan.id = "
+      "?");
+  const auto scanOf = [&](ScanId scan) -> JudgedOf::Scan {
+    if (!query.bind(scan).step()) refuse("there is no " + scanText(scan), scanText(scan), kLookAgain);
+    return {query.integer(0), query.integer(1), query.number(2)};
+  };
+  try {
+    return storedJudgement(*judgement, {scanOf(fixed), scanOf(moving), fixed_from_moving});
+  } catch (const std::invalid_argument& wrong) {
+    refuse(wrong.what(), "link " + std::to_string(fixed) + " - " + std::to_string(moving),
+           "check where the link comes from");
+  }
+}
+
+void EditWriter::apply(const SetLinkJudgements& step) {
+  Statement query = database_.prepare(
+      "SELECT fixed_scan_id, moving_scan_id, x_m, y_m, z_m, qx, qy, qz, qw FROM link WHERE id = ?");
+  for (const auto& [link, judgement] : step.judgements) {
+    requireLink(link);
+    query.bind(link).step();
+    const Pose pose = poseFrom(database_, query, 2);
+    const auto text = judgementText(judgement.get(), query.integer(0), query.integer(1), pose);
+    database_.run("UPDATE link SET judgement = ? WHERE id = ?", text, link);
   }
 }
 

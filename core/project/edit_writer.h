@@ -1,6 +1,8 @@
 // The steps of an edit, as changes to the tables.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "core/project/database.h"
@@ -27,6 +29,7 @@ class EditWriter {
   void apply(const AddLinks& step);
   void apply(const DeleteLinks& step);
   void apply(const SetLinkState& step);
+  void apply(const SetLinkJudgements& step);
   void apply(const SetPoses& step);
   void apply(const ClearPoses& step);
   void apply(const SetSurvey& step);
@@ -36,6 +39,10 @@ class EditWriter {
   void addJob(const JobRecord& job);
   void addPhotograph(ScanId scan, const NewPhotograph& photograph);
   void setPose(ScanId scan, Stage stage, const Pose& pose);
+
+  // With what it rests on now; nothing where there is no judgement.
+  std::optional<std::string> judgementText(const PairJudgement* judgement, ScanId fixed, ScanId moving,
+                                           const Pose& fixed_from_moving) const;
 
   // The scan's id, placeholders resolved; throws where the project has no such scan.
   ScanId resolved(ScanId scan) const;

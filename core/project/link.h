@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -9,6 +10,8 @@
 #include "core/geometry/pose.h"
 
 namespace tiltmap {
+
+struct PairJudgement;  // core/registration/pair_judgement.h
 
 // Stable for the life of a project, never reused. A scan's index (0, 1, ...) is its place in the order and
 // may change.
@@ -42,6 +45,9 @@ struct Link {
   // Inverse covariance of the small motion d of Pose::moved (rotation first, rad and m, in the fixed frame).
   // Not the covariance: a corridor leaves one direction without information, which has no covariance.
   std::optional<Matrix6d> information;
+  // Whether it can be trusted, by its two scans at this pose; null: not judged. The project gives it only as
+  // long as both scans have the measurements and the geometry that were judged.
+  std::shared_ptr<const PairJudgement> judgement = nullptr;
 
   bool usable() const { return succeeded && state == LinkState::Active; }
 };

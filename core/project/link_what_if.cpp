@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/text.h"
-#include "core/multiview/pose_system.h"
+#include "core/project/link_system.h"
 
 namespace tiltmap {
 
@@ -12,90 +12,28 @@ namespace {
 
 constexpr double kByHand_m = 0.02;
 constexpr double kByHand_rad = 0.5 * kDegree;
-// As the relaxation: nothing beside what links tell, but a direction that nothing determines stays.
-constexpr double kDamping = 1.0;
-constexpr int kSteps = 100;
-constexpr double kAtRest = 1e-7;  // m and rad
 // Of two figures, the one that is worth calling smaller, and what is not worth calling off.
 constexpr double kClearly = 0.7;
 constexpr double kNoticeable_m = 0.01;
 
-struct Tie {
-  const Link* link;
-  int fixed, moving;
-};
-
-struct Solution {
-  std::vector<Pose> world_from_scan;
-  std::vector<char> tied;
-};
-
-PoseDifference offOf(const Tie& tie, const std::vector<Pose>& poses) {
-  const Pose present =
-      poses[static_cast<std::size_t>(tie.fixed)].inverse() * poses[static_cast<std::size_t>(tie.moving)];
-  return difference(present, tie.link->fixed_from_moving);
-}
-
-std::vector<PairTerm> termsOf(const std::vector<Tie>& ties, const std::vector<Pose>& poses) {
-  std::vector<PairTerm> terms;
-  for (const Tie& tie : ties) {
-    const Pose present =
-        poses[static_cast<std::size_t>(tie.fixed)].inverse() * poses[static_cast<std::size_t>(tie.moving)];
-    terms.push_back(measuredPoseTerm(tie.fixed, tie.moving, present, tie.link->fixed_from_moving,
-                                     tie.link->information.value_or(informationByHand())));
-  }
-  return terms;
-}
-
-Result<Solution> solved(const std::vector<Tie>& ties, std::vector<Pose> poses,
-                        const std::vector<char>& pinned) {
-  Solution solution;
-  solution.tied = tiedToHeld(poses.size(), pinned, termsOf(ties, poses));
-  std::vector<char> held = pinned;
-  for (std::size_t i = 0; i < held.size(); ++i)
-    if (!solution.tied[i]) held[i] = 1;
-  for (int step = 0; step < kSteps; ++step) {
-    const auto motions = solvePoses(poses.size(), held, termsOf(ties, poses), kDamping);
-    if (!motions) return fail(motions.error());
-    double largest = 0.0;
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      if (held[i]) continue;
-      poses[i] = poses[i] * Pose().moved((*motions)[i]);
-      largest = std::max(largest, (*motions)[i].cwiseAbs().maxCoeff());
-    }
-    if (largest < kAtRest) break;
-  }
-  for (const Pose& pose : poses)
-    if (!pose.isFinite())
-      return fail("the links contradict each other too much to be solved together", "links",
-                  "disable the worst one first");
-  solution.world_from_scan = std::move(poses);
-  return solution;
-}
-
 // Whether the two scans hang together through the ties.
-bool joined(const Tie& tie, const std::vector<Tie>& ties, std::size_t count) {
+bool joined(const LinkTie& tie, const std::vector<LinkTie>& ties, std::size_t count) {
   std::vector<char> from(count, 0);
   from[static_cast<std::size_t>(tie.fixed)] = 1;
   std::vector<PairTerm> terms;
-  for (const Tie& other : ties) terms.push_back({other.fixed, other.moving, Pose(), {}, {}});
+  for (const LinkTie& other : ties) terms.push_back({other.fixed, other.moving, Pose(), {}, {}});
   return tiedToHeld(count, from, terms)[static_cast<std::size_t>(tie.moving)] != 0;
 }
 
-double rmsOf(const std::vector<Tie>& ties, const std::vector<Pose>& poses) {
+double rmsOf(const std::vector<LinkTie>& ties, const std::vector<Pose>& poses) {
   double sum = 0.0;
-  for (const Tie& tie : ties) sum += std::pow(offOf(tie, poses).translation_m, 2);
+  for (const LinkTie& tie : ties) sum += std::pow(offOf(tie, poses).translation_m, 2);
   return ties.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(ties.size()));
 }
 
 std::string millimetres(double metres) {
   return metres < 1.0 ? fixedReal(1000.0 * metres, metres < 0.01 ? 1 : 0) + " mm"
                       : fixedReal(metres, 2) + " m";
-}
-
-std::string pairName(const ProjectSnapshot& snapshot, const Link& link) {
-  return std::to_string(snapshot.indexOf(link.fixed).value_or(0)) + " – " +
-         std::to_string(snapshot.indexOf(link.moving).value_or(0));
 }
 
 }  // namespace
@@ -114,16 +52,17 @@ Result<LinkWhatIf> whatIfWithout(const ProjectSnapshot& snapshot, const std::vec
       return fail("there is no link " + std::to_string(id), snapshot.path().string(),
                   "choose one of the project's links");
     if (!link->succeeded)
-      return fail("link " + pairName(snapshot, *link) + " failed, so nothing is computed from it anyway",
+      return fail("link " + linkPairName(snapshot, *link) + " failed, so nothing is computed from it anyway",
                   snapshot.path().string(), "choose one that was found");
   }
-  std::vector<Tie> all, others, out;
+  std::vector<LinkTie> all, others, out;
   for (const Link& link : snapshot.links()) {
     const bool left = std::ranges::find(left_out, link.id) != left_out.end();
     if (!link.succeeded || (!left && link.state == LinkState::Disabled)) continue;
     const auto fixed = snapshot.indexOf(link.fixed), moving = snapshot.indexOf(link.moving);
     if (!fixed || !moving) continue;
-    const Tie tie{&link, static_cast<int>(*fixed), static_cast<int>(*moving)};
+    const LinkTie tie{&link, static_cast<int>(*fixed), static_cast<int>(*moving),
+                      link.information.value_or(informationByHand())};
     all.push_back(tie);
     (left ? out : others).push_back(tie);
   }
@@ -132,12 +71,12 @@ Result<LinkWhatIf> whatIfWithout(const ProjectSnapshot& snapshot, const std::vec
   if (count > 0) pinned.front() = 1;
   for (const ScanId pin : snapshot.pins()) pinned[*snapshot.indexOf(pin)] = 1;
 
-  auto before = solved(all, snapshot.filledPoses(snapshot.latestStage()), pinned);
+  auto before = solveTies(all, snapshot.filledPoses(snapshot.latestStage()), pinned);
   if (!before) return fail(before.error());
-  auto after = solved(others, before->world_from_scan, pinned);
+  auto after = solveTies(others, before->world_from_scan, pinned);
   if (!after) return fail(after.error());
   LinkWhatIf result;
-  for (const Tie& tie : all) {
+  for (const LinkTie& tie : all) {
     const bool left = std::ranges::find(left_out, tie.link->id) != left_out.end();
     result.links.push_back({tie.link->id, left, offOf(tie, before->world_from_scan),
                             offOf(tie, after->world_from_scan), !left || joined(tie, others, count)});
@@ -159,7 +98,7 @@ std::string whatIfText(const ProjectSnapshot& snapshot, const LinkWhatIf& what_i
     if (!verdict.left_out) continue;
     const Link* link = snapshot.findLink(verdict.link);
     if (!link) continue;
-    text += "Link " + pairName(snapshot, *link) + ": ";
+    text += "Link " + linkPairName(snapshot, *link) + ": ";
     if (!verdict.supported)
       text += "no other links tie these two scans, so nothing speaks for or against it. ";
     else

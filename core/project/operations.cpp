@@ -5,8 +5,9 @@
 #include "core/project/operations/calibrate_operation.h"
 #include "core/project/operations/export_operation.h"
 #include "core/project/operations/import_operation.h"
-#include "core/project/operations/merge_operation.h"
+#include "core/project/operations/judge_operation.h"
 #include "core/project/operations/link_operation.h"
+#include "core/project/operations/merge_operation.h"
 #include "core/project/operations/register_operation.h"
 #include "core/project/operations/relax_operation.h"
 #include "core/project/operations/simulate_operation.h"
@@ -22,6 +23,7 @@ OperationRegistry& registered() {
     all.add(makeImportOperation());
     all.add(makeRegisterOperation());
     all.add(makeLinkOperation());
+    all.add(makeJudgeOperation());
     all.add(makeRelaxOperation());
     all.add(makeCalibrateOperation());
     all.add(makeBodyMaskOperation());

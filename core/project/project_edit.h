@@ -81,6 +81,9 @@ struct SetLinkState {
   LinkId link = 0;
   LinkState state = LinkState::Active;
 };
+struct SetLinkJudgements {
+  std::vector<std::pair<LinkId, std::shared_ptr<const PairJudgement>>> judgements;  // null: not judged
+};
 struct SetPoses {
   Stage stage = Stage::Pairwise;
   std::vector<std::pair<ScanId, Pose>> poses;  // world_from_scan; scans not named keep theirs
@@ -99,8 +102,8 @@ struct SetSitePicture {
 };
 
 using EditStep = std::variant<AddScan, DeleteScans, RenameScan, SetNote, SetColour, ReorderScans, SetGeometry,
-                              AddPhotograph, RemovePhotograph, AddLinks, DeleteLinks, SetLinkState, SetPoses,
-                              ClearPoses, SetSurvey, SetPins, SetSitePicture>;
+                              AddPhotograph, RemovePhotograph, AddLinks, DeleteLinks, SetLinkState,
+                              SetLinkJudgements, SetPoses, ClearPoses, SetSurvey, SetPins, SetSitePicture>;
 
 // One entry of the history: undone and redone as a whole.
 struct ProjectEdit {

@@ -150,7 +150,10 @@ constexpr Migration kScanColour = "ALTER TABLE scan ADD COLUMN colour INTEGER";
 // What the tilt moved during a turn of the mirror while the line was measured; NULL: it stood.
 constexpr Migration kTurnTilt = "ALTER TABLE scan_line ADD COLUMN turn_tilt_rad REAL";
 
-constexpr std::array kMigrations = {kVersion1, kScanColour, kTurnTilt};
+// What judging a link by its scans gave, and of what; NULL: it was not judged.
+constexpr Migration kLinkJudgement = "ALTER TABLE link ADD COLUMN judgement TEXT";
+
+constexpr std::array kMigrations = {kVersion1, kScanColour, kTurnTilt, kLinkJudgement};
 constexpr std::array kRecorded = {"scan", "pose", "photograph", "link", "survey", "job"};
 
 }  // namespace

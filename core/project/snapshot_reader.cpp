@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/text.h"
+#include "core/project/judgement_json.h"
 #include "core/project/schema.h"
 
 namespace tiltmap {
@@ -17,15 +18,6 @@ namespace {
 StoreFailure damaged(const Database& database, const std::string& how) {
   return StoreFailure("the project is damaged: " + how, database.path().string(),
                       "go back to a copy of the project");
-}
-
-Pose poseFrom(const Database& database, const Statement& row, int first) {
-  double norm = 0.0;
-  for (int i = 3; i < 7; ++i) norm += row.real(first + i) * row.real(first + i);
-  if (!(std::abs(norm - 1.0) < 1e-6)) throw damaged(database, "a pose's quaternion is not a rotation");
-  return Pose::restored(
-      Eigen::Quaterniond(row.real(first + 6), row.real(first + 3), row.real(first + 4), row.real(first + 5)),
-      Eigen::Vector3d(row.real(first), row.real(first + 1), row.real(first + 2)));
 }
 
 std::unordered_map<std::int64_t, ScannerGeometry> readGeometries(const Database& database) {
@@ -65,12 +57,17 @@ std::vector<ScanEntry> readScans(const Database& database) {
   return scans;
 }
 
-std::vector<Link> readLinks(const Database& database) {
+JudgedOf::Scan judgedOf(const ScanEntry* scan) {
+  return scan ? JudgedOf::Scan{scan->matrix, scan->geometry_id, scan->lines} : JudgedOf::Scan{};
+}
+
+std::vector<Link> readLinks(const Database& database, const ProjectSnapshot& snapshot) {
   std::vector<Link> links;
   Statement query = database.prepare(
       "SELECT id, fixed_scan_id, moving_scan_id, x_m, y_m, z_m, qx, qy, qz, qw, iterations, correspondences, "
       "rms_m, "
-      "overlap, milliseconds, stop_reason, succeeded, origin, state, information FROM link ORDER BY id");
+      "overlap, milliseconds, stop_reason, succeeded, origin, state, information, judgement FROM link ORDER "
+      "BY id");
   while (query.step()) {
     Link link;
     link.id = query.integer(0);
@@ -93,6 +90,10 @@ std::vector<Link> readLinks(const Database& database) {
       std::memcpy(information.data(), query.blob(19).data(), 36 * sizeof(double));
       link.information = information;
     }
+    if (!query.isNull(20))
+      link.judgement =
+          restoredJudgement(query.text(20), {judgedOf(snapshot.find(link.fixed)),
+                                             judgedOf(snapshot.find(link.moving)), link.fixed_from_moving});
     links.push_back(std::move(link));
   }
   return links;
@@ -181,6 +182,15 @@ std::vector<HistoryEntry> readHistory(const Database& database) {
 
 }  // namespace
 
+Pose poseFrom(const Database& database, const Statement& row, int first) {
+  double norm = 0.0;
+  for (int i = 3; i < 7; ++i) norm += row.real(first + i) * row.real(first + i);
+  if (!(std::abs(norm - 1.0) < 1e-6)) throw damaged(database, "a pose's quaternion is not a rotation");
+  return Pose::restored(
+      Eigen::Quaterniond(row.real(first + 6), row.real(first + 3), row.real(first + 4), row.real(first + 5)),
+      Eigen::Vector3d(row.real(first), row.real(first + 1), row.real(first + 2)));
+}
+
 ScannerGeometry geometryFrom(const Statement& row, int first) {
   ScannerGeometry g;
   g.rows = row.number(first);
@@ -261,7 +271,7 @@ SnapshotPtr SnapshotReader::read(const Database& database, std::shared_ptr<Image
     scanOf(photographs.integer(1))
         .photographs.push_back({photographs.integer(0), photographs.text(2), photographs.text(3),
                                 photographs.text(4), static_cast<std::size_t>(photographs.integer(5))});
-  snapshot->links_ = readLinks(database);
+  snapshot->links_ = readLinks(database, *snapshot);
   snapshot->survey_ = readSurvey(database);
   snapshot->pins_ = readPins(database, *snapshot);
   snapshot->site_picture_ = readSitePicture(database);
@@ -278,6 +288,8 @@ SnapshotPtr SnapshotReader::withLine(const ProjectSnapshot& snapshot, ScanId sca
   ScanEntry& entry = next->scans_[next->index_.at(scan)];
   entry.lines = lines;
   entry.valid_cells = valid_cells;
+  for (Link& link : next->links_)
+    if (link.fixed == scan || link.moving == scan) link.judgement = nullptr;  // of fewer lines
   return next;
 }
 

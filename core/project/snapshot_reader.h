@@ -29,6 +29,9 @@ inline constexpr const char* kGeometryColumns =
     "lever_arm_x_m, lever_arm_y_m, lever_arm_z_m, mounting_qx, mounting_qy, mounting_qz, mounting_qw, "
     "range_offset_m, minimum_range_m, maximum_range_m";
 
+// A pose from seven columns, x y z qx qy qz qw, from the given one on. Throws StoreFailure for what is no
+// rotation.
+Pose poseFrom(const Database& database, const Statement& row, int first_column);
 // A pose as one text, "x y z qx qy qz qw", that reads back as the same numbers.
 std::string storedPoseText(const Pose& pose);
 

@@ -27,8 +27,14 @@ struct JudgementSettings {
   // How far the pose lies from where the registration started, at most: a cause for doubt, never more.
   double moved_good_m = 4.0;
   double moved_good_rad = 40.0 * kDegree;
+  // How far a link contradicts what the other links say, over what both are uncertain by, at most.
+  double others_good = 2.5, others_bad = 5.0;
+  // A difference smaller than both of these is no contradiction, however certain the links are of themselves.
+  double others_least_m = 0.015, others_least_rad = 0.15 * kDegree;
+  // Deviation that every link has beside its own: a scan is not quite rigid and undistorted.
+  double others_floor_m = 0.002, others_floor_rad = 0.02 * kDegree;
   // Calibration: the covariance of the pose is so many times the inverse of the registration's information.
-  double covariance_cells = 1.1;
+  double covariance_cells = 1.0;
   double covariance_patches = 1.0;
 };
 

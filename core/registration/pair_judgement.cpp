@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -29,6 +30,10 @@ constexpr double kMargin_m = 0.2;
 constexpr double kMarginShare = 0.01;
 constexpr double kNoiseFactor = 1.4;  // times what noisy normals make of a plane is taken off
 constexpr std::size_t kFewest = 12;   // as RegistrationSettings::min_pairs
+// Giving cells to patches anew: ends with a motion of less than this, a turn counting at so many metres.
+constexpr int kMostRounds = 4;
+constexpr double kAtRest_m = 1e-4;
+constexpr double kLever_m = 10.0;
 
 // How the pairs of both directions are looked for: as the last steps of a registration.
 const RegistrationSettings& pairing() {
@@ -142,23 +147,48 @@ Matrix6d heldInformation(const LinearSystem& system, const Conditioning& conditi
 }
 
 // What the scans themselves tell of the pose: its information, and the motion they still ask for. By cells
-// where there are any, which know best, else by patches.
+// where there are any, which know best, else by patches. A registration gives the cells to the patches once;
+// where it then moved, other cells lie on other patches, and only when they have been given anew until all is
+// at rest the motion is known. One step of it fell short in one pair of ten.
 struct Hold {
-  Matrix6d information;
-  Vector6d pull;
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d pull = Vector6d::Zero();
   bool by_cells = false;
 };
 
+// The small motion of the moving scan, on the left, from one pose to the other.
+Vector6d motionBetween(const Pose& from, const Pose& to) {
+  const Pose motion = to * from.inverse();
+  Vector6d small;
+  small << rotationLog(motion.quaternion()), motion.translation();
+  return small;
+}
+
 Hold holdAt(const JudgedScan& fixed, const JudgedScan& moving, const Pose& pose, const Comparison& found) {
   const double excess = std::min(found.excess_m, kMostExcess_m);
-  const auto cells = cellsOnPatches(*fixed.patches, *moving.patches, pose, excess, pairing());
+  Hold hold;
+  Pose at = pose;
+  double last = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < kMostRounds; ++round) {
+    const auto cells = cellsOnPatches(*fixed.patches, *moving.patches, at, excess, pairing());
+    if (cells.size() < kFewest) break;
+    LinearSystem system;
+    lineariseCells(*fixed.patches, *moving.patches, at, cells, excess, pairing().refine_deviations, system);
+    const Conditioning condition = conditioningOf(system, pairing().min_eigenvalue);
+    const Vector6d step = solvedStep(system, condition);
+    const double size = step.tail<3>().norm() + kLever_m * step.head<3>().norm();
+    if (size > last) break;
+    hold.information = heldInformation(system, condition);
+    hold.by_cells = true;
+    at = at.moved(step);
+    last = size;
+    if (size < kAtRest_m) break;
+  }
   // Both directions rest on the same surfaces: half of what they tell together.
-  if (cells.size() < kFewest)
+  if (!hold.by_cells)
     return {0.5 * heldInformation(found.system, found.condition), solvedStep(found.system, found.condition)};
-  LinearSystem system;
-  lineariseCells(*fixed.patches, *moving.patches, pose, cells, excess, pairing().refine_deviations, system);
-  const Conditioning condition = conditioningOf(system, pairing().min_eigenvalue);
-  return {heldInformation(system, condition), solvedStep(system, condition), true};
+  hold.pull = motionBetween(pose, at);
+  return hold;
 }
 
 struct Figure {
@@ -247,6 +277,7 @@ PairJudgement judgePair(const JudgedScan& fixed, const JudgedScan& moving, const
                         const JudgementSettings& settings) {
   const auto begin = std::chrono::steady_clock::now();
   PairJudgement j;
+  j.start = claim.start;
   j.moved = difference(claim.start, claim.fixed_from_moving);
   const auto finish = [&] {
     j.strength_sentence = strengthSentence(j.strength, settings.weak_good_m, settings.weak_good_rad);
@@ -282,6 +313,12 @@ PairJudgement judgePair(const JudgedScan& fixed, const JudgedScan& moving, const
     j.pull_rad = std::max(j.pull_rad, pull.rotation_rad);
   }
   return finish();
+}
+
+bool sameJudgement(const PairJudgement* a, const PairJudgement* b) {
+  if (a == b || !a || !b) return a == b;
+  return a->verdict == b->verdict && a->badness == b->badness && a->reason == b->reason &&
+         a->strength.covariance == b->strength.covariance;
 }
 
 }  // namespace tiltmap

@@ -59,7 +59,8 @@ struct PairJudgement {
   std::string strength_sentence;  // "can slide 12 cm along 30 deg left of ahead"
   // Where the surfaces still pull the moving scan to, from the pose.
   double pull_m = 0.0, pull_rad = 0.0;
-  PoseDifference moved;  // from the start
+  Pose start;            // where the registration began, as it claims
+  PoseDifference moved;  // from there
   double milliseconds = 0.0;
 
   double overlap() const { return overlap_moving < overlap_fixed ? overlap_fixed : overlap_moving; }
@@ -67,5 +68,8 @@ struct PairJudgement {
 
 PairJudgement judgePair(const JudgedScan& fixed, const JudgedScan& moving, const PairClaim& claim,
                         const JudgementSettings& settings = {});
+
+// By what tells two of them apart; a missing one is like a missing one.
+bool sameJudgement(const PairJudgement* a, const PairJudgement* b);
 
 }  // namespace tiltmap

@@ -17,32 +17,35 @@ std::string turnWords(const Eigen::Vector3d& axis) {
   return most == 0 ? "pitch" : most == 1 ? "roll" : "heading";
 }
 
-std::string angleWords(double radians) {
-  const double degrees = radians / kDegree;
-  return fixedReal(degrees, degrees < 0.095 ? 3 : degrees < 0.95 ? 2 : 1) + "°";
-}
-
 }  // namespace
 
 PoseStrength strengthOf(const Matrix6d& information, const Pose& fixed_from_moving, double factor,
                         const Vector6d& pull) {
-  PoseStrength strength;
   Matrix6d held = information.allFinite() ? Matrix6d(information / factor) : Matrix6d(Matrix6d::Zero());
   // What is free stays finite.
   held.diagonal().head<3>().array() += 1.0 / (kFree_rad * kFree_rad);
   held.diagonal().tail<3>().array() += 1.0 / (kFree_m * kFree_m);
   const Matrix6d covariance = held.ldlt().solve(Matrix6d::Identity()) + pull * pull.transpose();
+  const Matrix6d to_rig = rigFromFixed(fixed_from_moving);
+  return strengthOfCovariance(to_rig * covariance * to_rig.transpose());
+}
+
+Matrix6d rigFromFixed(const Pose& fixed_from_moving) {
   // A small motion (w, v) of the fixed frame moves the scan at t by (w, v + w x t), seen from the scan.
   const Eigen::Matrix3d back = fixed_from_moving.rotation().transpose();
   const Eigen::Vector3d& t = fixed_from_moving.translation();
   Eigen::Matrix3d cross;
   cross << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
-  Matrix6d to_scan = Matrix6d::Zero();
-  to_scan.topLeftCorner<3, 3>() = back;
-  to_scan.bottomRightCorner<3, 3>() = back;
-  to_scan.bottomLeftCorner<3, 3>() = -back * cross;
-  strength.covariance = to_scan * covariance * to_scan.transpose();
-  strength.covariance = (0.5 * (strength.covariance + strength.covariance.transpose())).eval();
+  Matrix6d to_rig = Matrix6d::Zero();
+  to_rig.topLeftCorner<3, 3>() = back;
+  to_rig.bottomRightCorner<3, 3>() = back;
+  to_rig.bottomLeftCorner<3, 3>() = -back * cross;
+  return to_rig;
+}
+
+PoseStrength strengthOfCovariance(const Matrix6d& rig_covariance) {
+  PoseStrength strength;
+  strength.covariance = 0.5 * (rig_covariance + rig_covariance.transpose());
   const Vector6d deviation = strength.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   strength.pitch_rad = deviation[0], strength.roll_rad = deviation[1], strength.heading_rad = deviation[2];
   strength.right_m = deviation[3], strength.forward_m = deviation[4], strength.up_m = deviation[5];
@@ -53,6 +56,11 @@ PoseStrength strengthOf(const Matrix6d& information, const Pose& fixed_from_movi
   strength.weakest_m = std::sqrt(std::max(0.0, place.eigenvalues()[2]));
   strength.weakest = place.eigenvectors().col(2);
   return strength;
+}
+
+std::string angleWords(double radians) {
+  const double degrees = radians / kDegree, size = std::abs(degrees);
+  return fixedReal(degrees, size < 0.095 ? 3 : size < 0.95 ? 2 : 1) + "°";
 }
 
 std::string lengthWords(double metres) {

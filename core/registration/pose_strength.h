@@ -33,6 +33,12 @@ inline constexpr double kFree_rad = 1.0;
 PoseStrength strengthOf(const Matrix6d& information, const Pose& fixed_from_moving, double factor = 1.0,
                         const Vector6d& pull = Vector6d::Zero());
 
+// The same figures of a covariance in the moving scan's own frame, as PoseStrength has it.
+PoseStrength strengthOfCovariance(const Matrix6d& rig_covariance);
+// Takes a small motion of Pose::moved in the fixed frame to what it does to the moving scan, in that scan's
+// own frame: rotation vector and shift.
+Matrix6d rigFromFixed(const Pose& fixed_from_moving);
+
 // In a sentence, with two deviations: "held everywhere: forward within 4 mm, heading within 0.01 deg" or "can
 // slide 12 cm along 30 deg left of ahead" where the weakest direction is worse than the bounds.
 std::string strengthSentence(const PoseStrength& strength, double weak_m, double weak_rad);
@@ -40,5 +46,6 @@ std::string strengthSentence(const PoseStrength& strength, double weak_m, double
 std::string directionWords(const Eigen::Vector3d& direction);
 // "12 cm", "4 mm", "3.2 m".
 std::string lengthWords(double metres);
+std::string angleWords(double radians);  // "0.004°", "0.12°", "3.4°"
 
 }  // namespace tiltmap

@@ -71,7 +71,7 @@ TEST_F(CliSite, LinksAreAddedAskedAboutAndDeleted) {
   ASSERT_EQ(run({"register", "p.tiltmap"}).exit_code, 0);
   const auto links = [&] { return object({"link", "list", "p.tiltmap"})["links"]; };
   ASSERT_EQ(links().size(), 2U);
-  EXPECT_EQ(links()[0]["quality"], "good") << links()[0]["reason"];
+  EXPECT_EQ(links()[0]["verdict"], "good") << links()[0]["reason"];
   const json added = object({"link", "add", "p.tiltmap", "0", "2"});
   EXPECT_EQ(added["fixed"], 0);
   EXPECT_EQ(added["moving"], 2);
@@ -93,6 +93,26 @@ TEST_F(CliSite, LinksAreAddedAskedAboutAndDeleted) {
   EXPECT_EQ(links().size(), 4U);
   EXPECT_EQ(run({"link", "add", "p.tiltmap", "1", "1"}).exit_code, 1);
   EXPECT_EQ(run({"link", "what-if", "p.tiltmap", "999"}).exit_code, 1);
+}
+
+TEST_F(CliSite, EveryoneTellsTheSameOfALink) {
+  simulate("3");
+  const json registered = object({"register", "p.tiltmap", "--pairs", "0:1,1:2,0:2"});
+  const json listed = object({"link", "list", "p.tiltmap"})["links"];
+  ASSERT_EQ(listed.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(listed[k]["by_scans"]["verdict"], registered["pairs"][k]["verdict"]);
+    EXPECT_EQ(listed[k]["by_scans"]["reason"], registered["pairs"][k]["verdict_reason"]);
+    EXPECT_EQ(listed[k]["loop"]["links"], 3);
+  }
+  const json judged = object({"link", "judge", "p.tiltmap"})["links"];
+  EXPECT_EQ(judged, listed);
+  EXPECT_EQ(object({"link", "list", "p.tiltmap"})["links"], listed);
+  const std::string reason = judged[0]["reason"].get<std::string>();
+  EXPECT_NE(run({"link", "judge", "p.tiltmap"}).out.find(reason), std::string::npos);
+  EXPECT_EQ(object({"link", "judge", "p.tiltmap", "--overlap-good", "0.99"})["links"][0]["verdict"],
+            "doubtful");
+  EXPECT_NE(run({"link", "judge", "p.tiltmap", "--links", "99"}).exit_code, 0);
 }
 
 }  // namespace

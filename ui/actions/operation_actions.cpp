@@ -27,6 +27,7 @@ const std::map<std::string, OperationLook>& looks() {
       {"export", {"document-export", "Ctrl+E", false}},
       {"rebase", {"crosshairs", "", true}},
       {"merge", {"list-add", "", true}},
+      {"judge", {"dialog-ok-apply", "", true}},
   };
   return known;
 }

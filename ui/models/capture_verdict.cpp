@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/multiview/stop_verdict.h"
+#include "core/registration/judgement_words.h"
 #include "ui/models/project_session.h"
 #include "ui/models/strings.h"
 
@@ -23,6 +24,14 @@ CaptureLight lightOf(StopLight light) {
       break;
   }
   return CaptureLight::Rescan;
+}
+
+QString figuresOf(const StopVerdict& verdict) {
+  if (!verdict.best) return {};
+  const PairJudgement& judged = verdict.links[*verdict.best].judgement;
+  QString text = qt(verdictName(judged.verdict) + ": " + judged.reason);
+  for (const JudgementLine& line : judgementLines(judged)) text += "\n" + qt(line.name + ": " + line.value);
+  return text;
 }
 
 // A stop of the map, as it was when it was prepared.
@@ -136,13 +145,9 @@ void CaptureVerdict::startNext() {
           const SweepEstimate& estimate = work->registration->estimate();
           const StopVerdict verdict = stopVerdict(*work->map, *captured, work->registration->odometry(),
                                                   estimate.from_odometry ? nullptr : &estimate, {}, control);
-          Judgement told{lightOf(verdict.light),
-                         qt(verdict.reason),
-                         qt(verdict.weak_directions),
-                         verdict.overlap,
-                         verdict.placed,
-                         verdict.world_from_scan,
-                         0.0};
+          Judgement told{
+              lightOf(verdict.light), qt(verdict.reason), qt(verdict.weak_directions), figuresOf(verdict),
+              verdict.overlap,        verdict.placed,     verdict.world_from_scan,     0.0};
           return [this, scan, told]() mutable {
             if (scan_ != scan) return;
             told.after_last_line_s = 0.001 * static_cast<double>(since_last_line_.elapsed());

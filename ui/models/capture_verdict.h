@@ -39,6 +39,7 @@ class CaptureVerdict : public QObject {
   struct Judgement {
     CaptureLight light = CaptureLight::Rescan;
     QString reason, weak_directions;
+    QString figures;  // of the stop it is placed by, as links are judged; a line each
     double overlap = 0.0;
     bool placed = false;
     Pose world_from_scan;

@@ -33,7 +33,7 @@ void LinkTableModel::readAgain() {
   what_if_.reset();
   if (snapshot_) {
     links_ = snapshot_->links();
-    judged_ = judgeLinks(*snapshot_, workspace_.display().stage());
+    judged_ = workspace_.linkOpinions().of(*snapshot_, workspace_.display().stage());
   }
   endResetModel();
   if (!asked) return;
@@ -52,7 +52,7 @@ const LinkJudgement* LinkTableModel::judgement(LinkId link) const {
 }
 
 QString LinkTableModel::summary() const {
-  std::array<int, 5> counts{};
+  std::array<int, 6> counts{};
   for (const LinkJudgement& judgement : judged_) ++counts[static_cast<std::size_t>(judgement.quality)];
   QStringList parts;
   for (std::size_t i = 0; i < counts.size(); ++i)
@@ -113,6 +113,7 @@ int LinkTableModel::columnCount(const QModelIndex& parent) const {
 QVariant LinkTableModel::number(std::size_t row, int column) const {
   const Link& link = links_[row];
   const LinkJudgement& judged = judged_[row];
+  const PairJudgement* scans = judged.by_scans.get();
   const LinkVerdict* said = verdict(link.id);
   switch (column) {
     case Pair:
@@ -121,11 +122,21 @@ QVariant LinkTableModel::number(std::size_t row, int column) const {
     case Quality:
       return -judged.badness;  // ascending: the worst first
     case Overlap:
-      return link.overlap;
+      return scans ? scans->overlap() : -1.0;
+    case Fit:
+      return scans ? scans->fit : -1.0;
     case Residual:
-      return link.rms_m;
-    case Pairs:
-      return link.correspondences;
+      return scans ? scans->residual_m : -1.0;
+    case Weakest:
+      return scans ? scans->strength.weakest_m : -1.0;
+    case Moved:
+      return scans ? scans->moved.translation_m : -1.0;
+    case Others:
+      return judged.others.supported ? judged.others.off.translation_m : -1.0;
+    case Times:
+      return judged.others.supported ? judged.others.deviations : -1.0;
+    case Loop:
+      return judged.others.loop > 0 ? judged.others.misclosure.translation_m : -1.0;
     case Off:
       return judged.off.translation_m;
     case Turned:
@@ -148,6 +159,10 @@ QString LinkTableModel::text(std::size_t row, int column) const {
     return unit == LengthUnit::Foot ? qt(fixedReal(inUnit(metres, unit), 4))
                                     : qt(fixedReal(1000.0 * metres, 1));
   };
+  const auto percent = [](double share) { return qt(fixedReal(100.0 * share, 0)); };
+  const QString none = "–";
+  const PairJudgement* scans = judged_[row].by_scans.get();
+  const LinkAgreement& others = judged_[row].others;
   const LinkVerdict* said = verdict(link.id);
   switch (column) {
     case Pair:
@@ -155,11 +170,21 @@ QString LinkTableModel::text(std::size_t row, int column) const {
     case Quality:
       return qt(linkQualityName(judged_[row].quality));
     case Overlap:
-      return qt(fixedReal(100.0 * link.overlap, 0));
+      return scans ? percent(scans->overlap()) : none;
+    case Fit:
+      return scans ? percent(scans->fit) : none;
     case Residual:
-      return small(link.rms_m);
-    case Pairs:
-      return QString::number(link.correspondences);
+      return scans ? small(scans->residual_m) : none;
+    case Weakest:
+      return scans ? small(2.0 * scans->strength.weakest_m) : none;
+    case Moved:
+      return scans ? small(scans->moved.translation_m) : none;
+    case Others:
+      return others.supported ? small(others.off.translation_m) : none;
+    case Times:
+      return others.supported ? qt(fixedReal(others.deviations, 1)) : none;
+    case Loop:
+      return others.loop > 0 ? small(others.misclosure.translation_m) : none;
     case Off:
       return small(judged_[row].off.translation_m);
     case Turned:
@@ -199,7 +224,7 @@ QVariant LinkTableModel::data(const QModelIndex& index, int role) const {
     }
     case Qt::ToolTipRole: {
       QString tip =
-          QString("Link %1: %2").arg(qt(linkName(*snapshot_, links_[row])), qt(judged_[row].reason));
+          QString("Link %1 is %2").arg(qt(linkName(*snapshot_, links_[row])), qt(linkText(judged_[row])));
       if (!links_[row].stop_reason.empty()) tip += "\nEnded with: " + qt(links_[row].stop_reason);
       return tip;
     }
@@ -217,10 +242,15 @@ QVariant LinkTableModel::headerData(int section, Qt::Orientation orientation, in
   const QString small =
       workspace_.preferences().lengthUnit() == LengthUnit::Foot ? QString("ft") : QString("mm");
   const QStringList titles = {"Link",
-                              "Quality",
+                              "Verdict",
                               "Overlap (%)",
+                              "Fit (%)",
                               "Residual (" + small + ")",
-                              "Pairs",
+                              "Held (" + small + ")",
+                              "Moved (" + small + ")",
+                              "Others (" + small + ")",
+                              "Times",
+                              "Loop (" + small + ")",
                               "Off (" + small + ")",
                               "Turned (°)",
                               "Origin",
@@ -229,11 +259,17 @@ QVariant LinkTableModel::headerData(int section, Qt::Orientation orientation, in
                               "Without (" + small + ")"};
   static const QStringList kTips = {
       "The fixed scan and the moving one, by index",
-      "Good, fair (a figure is beyond its limit: overlap 30 %, residual 50 mm, off 50 mm or 0.3°), doubtful "
-      "(beyond twice the limit), failed or disabled",
-      "Share of the common field that fits",
-      "Root mean square of the residuals of the pairs kept",
-      "Pairs of points or surfaces kept in the last iteration",
+      "Good: build on it. Doubtful: its scans or the other links do not prove it. Bad: do not use it. Not "
+      "judged: "
+      "choose Judge. The tip of a row tells the reason",
+      "Share of one scan's surfaces that lie on the other's, by the scan that shows more",
+      "Of the surfaces that both scans could see, the share that lies on the other",
+      "Median distance of the surfaces that fit",
+      "Two deviations of the place in the direction that the surfaces hold least",
+      "How far the pose lies from where its registration began",
+      "How far from the link's pose the other links together put its scans",
+      "That distance over what the link and the others are uncertain by: about 1 where all is well",
+      "How far the shortest loop of links through this one is from closing",
       "How far the link's own pose is from where the poses shown put the two scans",
       "Angle between the link's own pose and how the poses shown turn the two scans",
       "Who found it: odometry, registration (automatic) or a person (by hand)",

@@ -22,8 +22,13 @@ class LinkTableModel : public QAbstractTableModel {
     Pair,
     Quality,
     Overlap,
+    Fit,
     Residual,
-    Pairs,
+    Weakest,
+    Moved,
+    Others,
+    Times,
+    Loop,
     Off,
     Turned,
     Origin,
@@ -41,7 +46,7 @@ class LinkTableModel : public QAbstractTableModel {
   int rowOf(LinkId link) const;  // -1 where it is not there
   LinkQuality qualityAt(int row) const { return judged_[static_cast<std::size_t>(row)].quality; }
   const LinkJudgement* judgement(LinkId link) const;
-  QString summary() const;  // "42 links: 38 good, 3 fair, 1 doubtful"
+  QString summary() const;  // "42 links: 38 good, 3 doubtful, 1 bad"
 
   // Asks what the others say without these; the project stays as it is. An error is returned and nothing is
   // asked. Any change of the project ends it.

@@ -116,7 +116,7 @@ void SiteMapModel::readAgain() {
       scans.push_back(stop.scan);
       stops_.push_back(stop);
     }
-    const auto judged = judgeLinks(*placed, display.placedStage());
+    const auto judged = workspace_.linkOpinions().of(*placed, display.placedStage());
     for (std::size_t k = 0; k < judged.size(); ++k) {
       const Link& link = placed->links()[k];
       const auto fixed = snapshot_->indexOf(link.fixed), moving = snapshot_->indexOf(link.moving);

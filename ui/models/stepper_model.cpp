@@ -141,6 +141,7 @@ void StepperModel::startOver() {
   steps_.clear();
   attempts_.clear();
   result_.reset();
+  judgement_.reset();
   chosen_.reset();
   running_ = false;
   wanted_ = 0;
@@ -224,19 +225,25 @@ void StepperModel::compute() {
       trace->emplace(std::move(*begun));
     }
     const TraceStepPtr step = (*trace)->step();
+    std::shared_ptr<const PairJudgement> judgement;
+    if (const auto prepared = scans->get(); prepared && (*trace)->done())
+      judgement = std::make_shared<const PairJudgement>(judgePair(
+          *judgedScan(prepared->fixed), *judgedScan(prepared->moving), claimOf((*trace)->result(), start)));
     // The worker is idle when this runs, so that the trace may be read.
-    done = [this, trace, step] { take(step, **trace); };
+    done = [this, trace, step, judgement] { take(step, **trace, judgement); };
     return done;
   });
   Q_EMIT stateChanged();
 }
 
-void StepperModel::take(const TraceStepPtr& step, const RegistrationTrace& trace) {
+void StepperModel::take(const TraceStepPtr& step, const RegistrationTrace& trace,
+                        std::shared_ptr<const PairJudgement> judgement) {
   const bool following = position_ == count();
   steps_.push_back(step);
   attempts_ = trace.attempts();
   chosen_ = trace.chosenAttempt();
   if (trace.done()) result_ = trace.result();
+  judgement_ = std::move(judgement);
   Q_EMIT stepsChanged();
   if (following) setPosition(count());
   if (isEnded()) {
@@ -341,6 +348,7 @@ Status StepperModel::accept() {
   pair.preset = utf8(parameters_.preset());
   pair.values = parameters_.values();
   pair.started = started_;
+  pair.judgement = judgement_;
   // The session tells of a refusal itself.
   return session_.apply(steppedPairEdit(session_.snapshot(), pair));
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/registration/pair_judgement.h"
 #include "core/registration/registration_trace.h"
 #include "ui/models/background_worker.h"
 #include "ui/models/parameter_model.h"
@@ -60,6 +61,8 @@ class StepperModel : public QObject {
   const std::vector<TraceAttempt>& attempts() const { return attempts_; }
   const std::optional<PairResult>& result() const { return result_; }
   std::optional<std::size_t> chosenAttempt() const { return chosen_; }
+  // Whether the result can be trusted, by the two scans; null until there is one. The link will carry it.
+  std::shared_ptr<const PairJudgement> judgement() const { return judgement_; }
 
   // At the position. Nothing at the start, where no pairs have been found yet.
   const TraceStep* current() const;
@@ -99,7 +102,8 @@ class StepperModel : public QObject {
   void startOver();
   void setPosition(int position);
   void compute();
-  void take(const TraceStepPtr& step, const RegistrationTrace& trace);
+  void take(const TraceStepPtr& step, const RegistrationTrace& trace,
+            std::shared_ptr<const PairJudgement> judgement);
   void tick();
 
   ProjectSession& session_;
@@ -119,6 +123,7 @@ class StepperModel : public QObject {
   std::vector<TraceAttempt> attempts_;
   std::optional<PairResult> result_;
   std::optional<std::size_t> chosen_;
+  std::shared_ptr<const PairJudgement> judgement_;
   std::vector<TracedPair> pairs_;
   std::optional<std::size_t> picked_;
   int position_ = 0;

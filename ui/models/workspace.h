@@ -4,6 +4,7 @@
 #include <QObject>
 
 #include "ui/models/job_queue.h"
+#include "ui/models/link_opinions.h"
 #include "ui/models/messages.h"
 #include "ui/models/preferences.h"
 #include "ui/models/project_session.h"
@@ -41,6 +42,7 @@ class Workspace : public QObject {
   RelaxationModel& relaxation() { return *relaxation_; }
   StepperModel& stepper() { return stepper_; }
   const StepperModel& stepper() const { return stepper_; }
+  LinkOpinions& linkOpinions() { return link_opinions_; }
 
   // Starts an operation with the number of threads that the user prefers, unless `values` says otherwise. A
   // refusal is shown as a message; the job's id else.
@@ -60,6 +62,7 @@ class Workspace : public QObject {
   Messages messages_;
   Residuals residuals_;
   StepperModel stepper_;
+  LinkOpinions link_opinions_;
 };
 
 }  // namespace tiltmap::ui

@@ -188,6 +188,7 @@ void CapturePanel::refresh() {
   if (const auto& told = verdict.judgement()) {
     if (told->overlap > 0.0) place = QString("Overlap %1 %. ").arg(100.0 * told->overlap, 0, 'f', 0);
     place += told->weak_directions;
+    place_->setToolTip(told->figures);
   } else if (const auto& so_far = verdict.estimate(); so_far && so_far->overlap > 0.0) {
     place =
         QString("Overlap so far %1 % (%2 lines).").arg(100.0 * so_far->overlap, 0, 'f', 0).arg(so_far->lines);

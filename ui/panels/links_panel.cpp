@@ -121,9 +121,16 @@ QWidget* LinksPanel::makeBar() {
   what_if_ =
       barButton("links-what-if", "help-hint", "What if…",
                 "Leave the selected links out and see what the others then say; changes nothing yet", bar);
-  for (QToolButton* button : {add_, what_if_, state_, again_, show_, delete_}) layout->addWidget(button);
+  judge_ = barButton(
+      "links-judge", "dialog-ok-apply", "Judge",
+      "Hold the scans of the selected links (of all, where none is selected) against each other: can "
+      "they be trusted?",
+      bar);
+  for (QToolButton* button : {add_, what_if_, state_, judge_, again_, show_, delete_})
+    layout->addWidget(button);
   // A narrow column has room for the words of the first three only.
-  for (QToolButton* button : {again_, show_, delete_}) button->setToolButtonStyle(Qt::ToolButtonIconOnly);
+  for (QToolButton* button : {judge_, again_, show_, delete_})
+    button->setToolButtonStyle(Qt::ToolButtonIconOnly);
   layout->addStretch();
   rows->addLayout(layout);
   rows->addWidget(summary_);
@@ -136,6 +143,7 @@ QWidget* LinksPanel::makeBar() {
           [this] { setState(state_->text() == "Enable" ? LinkState::Active : LinkState::Disabled); });
   connect(delete_, &QToolButton::clicked, this, &LinksPanel::deleteSelected);
   connect(again_, &QToolButton::clicked, this, &LinksPanel::registerAgain);
+  connect(judge_, &QToolButton::clicked, this, &LinksPanel::judge);
   connect(show_, &QToolButton::clicked, this, &LinksPanel::showBoth);
   connect(what_if_, &QToolButton::clicked, this, &LinksPanel::askWhatIf);
   return bar;
@@ -228,6 +236,7 @@ void LinksPanel::refreshButtons() {
   state_->setEnabled(any && free);
   delete_->setEnabled(any && free);
   again_->setEnabled(any && writable);
+  judge_->setEnabled(writable && snapshot && !snapshot->links().empty());
   show_->setEnabled(any);
   what_if_->setEnabled(any && all_found);
   add_->setEnabled(free && snapshot && snapshot->scans().size() > 1);
@@ -337,6 +346,16 @@ void LinksPanel::showBoth() {
 void LinksPanel::askWhatIf() {
   if (const Status asked = model_->ask(context_.workspace.selection().links()); !asked)
     context_.workspace.messages().error(asked.error());
+}
+
+void LinksPanel::judge() {
+  JobRequest request;
+  request.operation = operations().find("judge");
+  QStringList chosen;
+  for (const LinkId id : context_.workspace.selection().links()) chosen << QString::number(id);
+  request.title = chosen.isEmpty() ? QString("Judge all links") : "Judge links " + chosen.join(", ");
+  request.values = {{"links", utf8(chosen.join(","))}};
+  (void)context_.workspace.start(request);
 }
 
 void LinksPanel::add(const char* method) {

@@ -41,6 +41,7 @@ class LinksPanel : public QWidget {
   void registerAgain();
   void showBoth();
   void askWhatIf();
+  void judge();
   void add(const char* method);
 
   PanelContext context_;
@@ -55,6 +56,7 @@ class LinksPanel : public QWidget {
   QToolButton* again_ = nullptr;
   QToolButton* show_ = nullptr;
   QToolButton* what_if_ = nullptr;
+  QToolButton* judge_ = nullptr;
   QFrame* add_row_ = nullptr;
   QComboBox* fixed_ = nullptr;
   QComboBox* moving_ = nullptr;

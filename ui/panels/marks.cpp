@@ -29,15 +29,19 @@ QPen qualityPen(LinkQuality quality, const ThemeColours& colours) {
       pen.setColor(colours.good);
       pen.setWidthF(1.5);
       break;
-    case LinkQuality::Fair:
+    case LinkQuality::Doubtful:
       pen.setColor(colours.warning);
       pen.setWidthF(2.0);
       pen.setDashPattern({5.0, 1.5});
       break;
-    case LinkQuality::Doubtful:
+    case LinkQuality::Bad:
       pen.setColor(colours.error);
       pen.setWidthF(2.5);
       pen.setDashPattern({2.5, 2.0});
+      break;
+    case LinkQuality::NotJudged:
+      pen.setColor(colours.muted);
+      pen.setWidthF(1.5);
       break;
     case LinkQuality::Failed:
       pen.setColor(colours.error);

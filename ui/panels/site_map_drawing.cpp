@@ -91,7 +91,9 @@ void SiteMapView::drawLinks(QPainter& painter) const {
   std::vector<const MapLink*> order;
   for (const MapLink& link : model_.links()) order.push_back(&link);
   std::ranges::stable_sort(order, {}, [](const MapLink* link) {
-    const int rank = link->quality == LinkQuality::Disabled ? 0 : 1 + static_cast<int>(link->quality);
+    const int rank = link->quality == LinkQuality::Disabled    ? 0
+                     : link->quality == LinkQuality::NotJudged ? 1
+                                                               : 2 + static_cast<int>(link->quality);
     return link->selected || link->left_out ? 100 : link->live ? -1 : rank;
   });
   for (const MapLink* link : order) {
@@ -256,8 +258,8 @@ void SiteMapView::drawLegend(QPainter& painter) const {
     RelaxationRole role = RelaxationRole::None;
   };
   std::vector<Entry> entries;
-  for (const LinkQuality quality : {LinkQuality::Good, LinkQuality::Fair, LinkQuality::Doubtful,
-                                    LinkQuality::Failed, LinkQuality::Disabled})
+  for (const LinkQuality quality : {LinkQuality::Good, LinkQuality::Doubtful, LinkQuality::Bad,
+                                    LinkQuality::NotJudged, LinkQuality::Failed, LinkQuality::Disabled})
     if (std::ranges::any_of(model_.links(),
                             [&](const MapLink& link) { return !link.live && link.quality == quality; }))
       entries.push_back({qt(linkQualityName(quality)) + " link", quality});

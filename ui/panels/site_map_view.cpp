@@ -250,11 +250,11 @@ bool SiteMapView::event(QEvent* event) {
     if (const RelaxationRole role = context_.workspace.display().role(*scan); role != RelaxationRole::None)
       tip += "\n" + relaxationRoleName(role) + ": " + relaxationRoleTip(role);
   } else if (const auto link = model_.linkAt(world, reach); link && snapshot) {
-    for (const LinkJudgement& judged : judgeLinks(*snapshot, context_.workspace.display().stage()))
+    for (const LinkJudgement& judged :
+         context_.workspace.linkOpinions().of(*snapshot, context_.workspace.display().stage()))
       if (judged.link == *link)
-        tip = QString("Link %1, %2: %3")
-                  .arg(qt(linkName(*snapshot, *snapshot->findLink(*link))),
-                       qt(linkQualityName(judged.quality)), qt(judged.reason));
+        tip = QString("Link %1 is %2")
+                  .arg(qt(linkName(*snapshot, *snapshot->findLink(*link))), qt(linkText(judged)));
   }
   if (tip.isEmpty())
     QToolTip::hideText();

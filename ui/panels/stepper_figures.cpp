@@ -6,6 +6,7 @@
 #include <QVBoxLayout>
 #include <cmath>
 
+#include "core/registration/judgement_words.h"
 #include "ui/models/strings.h"
 #include "ui/models/workspace.h"
 #include "ui/panels/controls.h"
@@ -19,6 +20,7 @@ StepperFigures::StepperFigures(const PanelContext& context, QWidget* parent)
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(8);
   column->addWidget(buildNumbers());
+  column->addWidget(buildJudgement());
   column->addWidget(buildMotion());
   connect(&model_, &StepperModel::positionChanged, this, &StepperFigures::refresh);
   connect(&model_, &StepperModel::stepsChanged, this, &StepperFigures::refresh);
@@ -95,12 +97,38 @@ QWidget* StepperFigures::buildMotion() {
   return fold;
 }
 
+QWidget* StepperFigures::buildJudgement() {
+  auto* fold = new FoldBox("Can it be trusted?", "stepper-trust", this, true);
+  fold->setToolTip("The two scans held against each other at the result, as links are judged");
+  verdict_ = wrappedLabel(fold, "stepper-verdict");
+  judgement_ = wrappedLabel(fold, "stepper-judgement");
+  fold->content()->addWidget(verdict_);
+  fold->content()->addWidget(judgement_);
+  return fold;
+}
+
+void StepperFigures::refreshJudgement() {
+  const auto judged = model_.judgement();
+  judgement_->setVisible(judged != nullptr);
+  if (!judged) {
+    verdict_->setText("Judged when the registration has ended.");
+    return;
+  }
+  verdict_->setText(
+      QString("<b>%1</b>: %2.").arg(qt(verdictName(judged->verdict)), qt(judged->reason).toHtmlEscaped()));
+  QString lines;
+  for (const JudgementLine& line : judgementLines(*judged))
+    lines += (lines.isEmpty() ? "" : "<br>") + qt(line.name) + ": " + qt(line.value).toHtmlEscaped();
+  judgement_->setText(lines);
+}
+
 void StepperFigures::showNumber(const QString& name, const QString& text) {
   numbers_.at(name)->setText(text);
 }
 
 void StepperFigures::refresh() {
   const TraceStep* step = model_.current();
+  refreshJudgement();
   const Pose motion = step ? step->report.motion : Pose();
   const Eigen::Matrix3d rotation = motion.rotation();
   for (int r = 0; r < 3; ++r) {

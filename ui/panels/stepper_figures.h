@@ -1,4 +1,5 @@
-// What the iteration shown found and did: residual, pairs, overlap, and its motion as matrix and vector.
+// What the iteration shown found and did: residual, pairs, overlap, its motion as matrix and vector, and
+// in the end whether the result can be trusted.
 #pragma once
 
 #include <QWidget>
@@ -22,6 +23,8 @@ class StepperFigures : public QWidget {
  private:
   QWidget* buildNumbers();
   QWidget* buildMotion();
+  QWidget* buildJudgement();
+  void refreshJudgement();
   void addNumber(QGridLayout* grid, const QString& name, const QString& title, const QString& tip);
   void showNumber(const QString& name, const QString& text);
   void refresh();
@@ -31,6 +34,8 @@ class StepperFigures : public QWidget {
   std::map<QString, QLabel*> numbers_;
   QLabel* motion_[3][4];
   QLabel* motion_text_;
+  QLabel* verdict_;
+  QLabel* judgement_;
 };
 
 }  // namespace tiltmap::ui

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/project/operations/pair_links.h"
+#include "core/registration/pair_judgement.h"
 #include "core/registration/register_pair.h"
 
 namespace tiltmap {
@@ -128,7 +130,14 @@ class LinkOperation : public SettingsOperation<LinkSettings> {
                      ? registered(*fixed_scan, *moving_scan, start, settings, control)
                      : asPlaced(*fixed_scan, *moving_scan, start, settings, control);
     if (!found) return fail(found.error());
-    Link link = std::move(*found);
+    PairClaim claim;
+    claim.fixed_from_moving = found->fixed_from_moving;
+    claim.start = start;
+    claim.succeeded = true;
+    const RegistrationSettings preparing;
+    Link link =
+        judgedLink(std::move(*found), judgePair(*judgedScan(prepare(*fixed_scan, preparing)),
+                                                *judgedScan(prepare(*moving_scan, preparing)), claim));
     link.fixed = fixed.id;
     link.moving = moving.id;
     const PoseDifference moved = difference(start, link.fixed_from_moving);
@@ -138,6 +147,8 @@ class LinkOperation : public SettingsOperation<LinkSettings> {
                                           {"overlap", link.overlap},
                                           {"rms_m", link.rms_m},
                                           {"correspondences", link.correspondences},
+                                          {"verdict", verdictName(link.judgement->verdict)},
+                                          {"verdict_reason", link.judgement->reason},
                                           {"moved_m", moved.translation_m},
                                           {"moved_deg", moved.rotation_rad / kDegree},
                                           {"stop_reason", link.stop_reason},

@@ -5,6 +5,7 @@
 
 #include "core/base/text.h"
 #include "core/base/version.h"
+#include "core/registration/pair_judgement.h"
 
 namespace tiltmap {
 
@@ -73,6 +74,11 @@ Link pairLink(ScanId fixed, ScanId moving, const PairResult& result, double mill
   return link;
 }
 
+Link judgedLink(Link link, const PairJudgement& judgement) {
+  link.judgement = std::make_shared<const PairJudgement>(judgement);
+  return link;
+}
+
 ProjectEdit pairLinksEdit(const SnapshotPtr& snapshot, std::vector<Link> links) {
   auto poses = chainedPoses(*snapshot, links);
   return registerEdit(snapshot, std::move(links), std::move(poses));
@@ -84,6 +90,7 @@ ProjectEdit steppedPairEdit(const SnapshotPtr& snapshot, const SteppedPair& pair
   if (!pair.result.succeeded())
     throw std::invalid_argument("steppedPairEdit: the registration did not succeed");
   Link link = pairLink(pair.fixed, pair.moving, pair.result, pair.result.milliseconds);
+  link.judgement = pair.judgement;
   if (pair.start_by_hand) link.origin = LinkOrigin::ByHand;
   ProjectEdit edit = pairLinksEdit(snapshot, {link});
   edit.title = "accept scan " + std::to_string(*moving) + " on scan " + std::to_string(*fixed);

@@ -1,6 +1,7 @@
 // What a project keeps of registered pairs: the link of each, and the poses chained from them.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ Pose odometryStart(const ScanEntry& fixed, const ScanEntry& moving);
 
 // `milliseconds`: from the two raw matrices to the pose.
 Link pairLink(ScanId fixed, ScanId moving, const PairResult& result, double milliseconds);
+
+// The link with what judging its pair at its pose gave.
+Link judgedLink(Link link, const PairJudgement& judgement);
 
 // The links, and the stage `pairwise`: every scan chained to the one before it by its link (one of these,
 // else one that the project has), or by its odometry where there is no usable one.
@@ -33,6 +37,7 @@ struct SteppedPair {
   std::string preset = "default";
   ParameterValues values;
   std::string started;  // UTC, as utcNow()
+  std::shared_ptr<const PairJudgement> judgement = nullptr;  // of the result; null: not judged
 };
 ProjectEdit steppedPairEdit(const SnapshotPtr& snapshot, const SteppedPair& pair);
 

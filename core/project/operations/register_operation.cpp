@@ -164,7 +164,7 @@ class RegisterOperation : public SettingsOperation<RegisterSettings> {
           (*prepared->at(fixed))->milliseconds + (*prepared->at(moving))->milliseconds + result.milliseconds;
       const ScanId fixed_id = snapshot->scans()[static_cast<std::size_t>(fixed)].id;
       const ScanId moving_id = snapshot->scans()[static_cast<std::size_t>(moving)].id;
-      links.push_back(pairLink(fixed_id, moving_id, result, milliseconds));
+      links.push_back(judgedLink(pairLink(fixed_id, moving_id, result, milliseconds), results[i]->judgement));
       report["pairs"].push_back(pairJson((*pairs)[i], *results[i], milliseconds));
       if (!result.succeeded())
         outcome.warnings.push_back("scan " + std::to_string(moving) + " was not registered to scan " +

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/registration/pair_judgement.h"
+
 namespace tiltmap {
 namespace {
 
@@ -52,6 +54,23 @@ ReportData example() {
                  {localisationTable("pairwise", estimated), *evaluateTrajectory(estimated, truth)}};
   data.pairs = {{0, 1, 0.734, 0.0123, 8123, 17, "small change", 91.26, true},
                 {1, 2, 0.02, 0.4, 12, 1, "too few pairs", 3.0, false}};
+  LinkJudgement judged;
+  judged.quality = LinkQuality::Bad;
+  judged.reason = "the other links put it <far> away";
+  judged.others.supported = true;
+  judged.others.off = {0.0321, 0.001};
+  judged.others.deviations = 7.25;
+  judged.others.loop = 4;
+  judged.others.misclosure = {0.0543, 0.002};
+  data.trust = {{1, 2, judged}};
+  PairJudgement scans;
+  scans.overlap_fixed = 0.37, scans.fit = 0.91;
+  scans.residual_m = 0.0046, scans.expected_m = 0.0041;
+  scans.strength.weakest_m = 0.0037;
+  judged.by_scans = std::make_shared<const PairJudgement>(scans);
+  judged.quality = LinkQuality::Good;
+  judged.reason = "fits";
+  data.trust.push_back({0, 1, judged});
   data.relaxed_links = 1234;
   data.movements = {{0, 0.0, 0.0}, {1, 0.01234, 0.0567}};
   ParameterInfo info;
@@ -82,6 +101,16 @@ TEST(Report, IsWellFormedAndHoldsTheValues) {
                            "<td>small change</td>",
                            "<td class=\"n\">91.3</td>",
                            "failed: too few pairs",
+                           "<span class=\"bad\">bad</span>",
+                           "the other links put it &lt;far&gt; away",
+                           "<td class=\"n\">–</td>",
+                           "<td class=\"n\">32.1</td>",
+                           "<td class=\"n\">54.3</td>",
+                           "<td>good</td>",
+                           "<td class=\"n\">37</td>",
+                           "<td class=\"n\">4.6</td>",
+                           "<td class=\"n\">4.1</td>",
+                           "<td class=\"n\">7.4</td>",
                            "1,234 more overlapping pairs",
                            "<td class=\"n\">12.34</td>",
                            "<td class=\"n\">0.0567</td>",

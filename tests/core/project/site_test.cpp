@@ -6,6 +6,7 @@
 #include "core/products/png.h"
 #include "core/project/link_quality.h"
 #include "core/project/project.h"
+#include "core/registration/pair_judgement.h"
 #include "tests/support/project_samples.h"
 #include "tests/support/temporary_folder.h"
 
@@ -109,34 +110,56 @@ TEST_F(SiteTest, ProposedPosesAreInASnapshotOfTheirOwn) {
   EXPECT_TRUE(proposed->scans()[2].image()) << "with the same matrices";
 }
 
-TEST_F(SiteTest, LinksAreJudgedByStatedLimits) {
+TEST_F(SiteTest, ALinkIsAsGoodAsItsScansAndTheOtherLinksSay) {
   const auto poses = now().filledPoses(Stage::Odometry);
-  const auto between = [&](std::size_t a, std::size_t b) {
+  const auto between = [&](std::size_t a, std::size_t b, Verdict verdict, double badness) {
     Link link = test::sampleLink(id(a), id(b));
     link.fixed_from_moving = poses[a].inverse() * poses[b];
+    PairJudgement judged;
+    judged.verdict = verdict;
+    judged.badness = badness;
+    judged.reason = "made " + verdictName(verdict);
+    judged.strength = strengthOf(1e6 * Matrix6d::Identity(), link.fixed_from_moving);
+    link.judgement = std::make_shared<const PairJudgement>(judged);
     return link;
   };
-  Link good = between(0, 1), small = between(1, 2), off = between(2, 3), failed = between(0, 3),
-       disabled = between(0, 2);
-  small.overlap = 0.2;
-  off.fixed_from_moving = Pose::planar(0.5, 0, 0) * off.fixed_from_moving;
+  Link good = between(0, 1, Verdict::Good, 0.4), doubtful = between(1, 2, Verdict::Doubtful, 1.5),
+       bad = between(2, 3, Verdict::Bad, 4.0), failed = between(0, 3, Verdict::Bad, 3.0),
+       disabled = between(0, 2, Verdict::Good, 0.2), none = between(1, 3, Verdict::Good, 0.0);
   failed.succeeded = false;
   disabled.state = LinkState::Disabled;
-  ProjectEdit edit{"links", {AddLinks{{good, small, off, failed, disabled}, true}}, nullptr, {}, {}};
+  none.judgement = nullptr;
+  ProjectEdit edit{"links", {AddLinks{{good, doubtful, bad, failed, disabled, none}, true}}, nullptr, {}, {}};
   must(project_->apply(edit));
-  const auto judged = judgeLinks(now(), Stage::Odometry);
-  ASSERT_EQ(judged.size(), 5U);
+  auto judged = judgeLinks(now(), Stage::Odometry);
+  ASSERT_EQ(judged.size(), 6U);
   EXPECT_EQ(judged[0].quality, LinkQuality::Good);
-  EXPECT_EQ(judged[1].quality, LinkQuality::Fair);
-  EXPECT_NE(judged[1].reason.find("20 %"), std::string::npos);
-  EXPECT_EQ(judged[2].quality, LinkQuality::Doubtful);
-  EXPECT_NEAR(judged[2].off.translation_m, 0.5, 1e-9);
+  EXPECT_EQ(judged[0].reason, "made good");
+  EXPECT_EQ(judged[1].quality, LinkQuality::Doubtful);
+  EXPECT_EQ(judged[2].quality, LinkQuality::Bad);
   EXPECT_EQ(judged[3].quality, LinkQuality::Failed);
   EXPECT_EQ(judged[4].quality, LinkQuality::Disabled);
-  EXPECT_GT(judged[3].badness, judged[2].badness);
-  EXPECT_GT(judged[2].badness, judged[1].badness);
-  EXPECT_GT(judged[1].badness, judged[0].badness);
-  EXPECT_GT(judged[0].badness, judged[4].badness);
+  EXPECT_EQ(judged[5].quality, LinkQuality::NotJudged);
+  for (const auto& [worse, better] : {std::pair{3, 2}, {2, 1}, {1, 5}, {5, 0}, {0, 4}})
+    EXPECT_GT(judged[static_cast<std::size_t>(worse)].badness,
+              judged[static_cast<std::size_t>(better)].badness);
+  // One that its scans find good, but no other link does.
+  Link wrong = between(0, 2, Verdict::Good, 0.3);
+  wrong.fixed_from_moving = wrong.fixed_from_moving * Pose::planar(0.5, 0, 0);
+  Link third = between(0, 3, Verdict::Good, 0.3), fourth = between(1, 3, Verdict::Good, 0.3),
+       fifth = between(2, 3, Verdict::Good, 0.3);
+  must(
+      project_->apply(ProjectEdit{"more", {AddLinks{{wrong, third, fourth, fifth}, true}}, nullptr, {}, {}}));
+  judged = judgeLinks(now(), Stage::Odometry);
+  for (const LinkJudgement& one : judged) {
+    const Link& link = *now().findLink(one.link);
+    if (link.fixed != id(0) || link.moving != id(2) || link.state != LinkState::Active) continue;
+    EXPECT_EQ(one.quality, LinkQuality::Bad) << one.reason;
+    EXPECT_NE(one.reason.find("the other links put it 50 cm"), std::string::npos) << one.reason;
+    EXPECT_NEAR(one.off.translation_m, 0.5, 1e-9);
+    EXPECT_NE(linkText(one).find("Other links: put it 50 cm"), std::string::npos) << linkText(one);
+    EXPECT_NE(linkText(one).find("Loop: of 3 links"), std::string::npos) << linkText(one);
+  }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "core/registration/pair_judgement.h"
 
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 #include "tests/support/room_scene.h"
@@ -65,6 +66,19 @@ TEST_F(PairJudgementTest, NoPoseThatIsOffIsGood) {
     EXPECT_NE(j.verdict, Verdict::Good) << difference(off, Pose()).translation_m << " m: " << j.reason;
     EXPECT_GT(j.badness, 1.0);
     EXPECT_FALSE(j.reason.empty());
+  }
+}
+
+TEST_F(PairJudgementTest, APoseLeftBeforeItsRestIsPulledHomeAndItsCovarianceSaysSo) {
+  for (const double off_m : {0.01, 0.02, 0.03}) {
+    const Pose pose = kTruth * Pose::planar(off_m, -0.5 * off_m, 0.001);
+    const PairJudgement j = at(pose);
+    const double off = difference(kTruth, pose).translation_m;
+    EXPECT_NEAR(j.pull_m, off, 0.2 * off + 0.003) << off_m;
+    const Pose error = kTruth.inverse() * pose;
+    Vector6d e;
+    e << rotationLog(error.quaternion()), error.translation();
+    EXPECT_LT(e.dot(j.strength.covariance.ldlt().solve(e)), 16.8) << "beyond 99 of 100, off by " << off_m;
   }
 }
 

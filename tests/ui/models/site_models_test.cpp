@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/products/png.h"
+#include "core/registration/pair_judgement.h"
 #include "tests/ui/models/model_samples.h"
 #include "ui/models/link_table_model.h"
 #include "ui/models/site_map_model.h"
@@ -29,7 +30,15 @@ class SiteModelsTest : public WorkspaceTest {
     const auto poses = snapshot().filledPoses(Stage::Odometry);
     Link link = sampleLink(id(a), id(b));
     link.fixed_from_moving = poses[a].inverse() * poses[b];
-    link.information = Matrix6d::Identity() * 1e8;
+    link.information = Matrix6d::Identity() * 1e6;
+    PairJudgement judged;
+    judged.verdict = Verdict::Good;
+    judged.badness = 0.5;
+    judged.reason = "fits";
+    judged.overlap_moving = 0.42, judged.fit = 0.93;
+    judged.residual_m = 0.0051;
+    judged.strength = strengthOf(*link.information, link.fixed_from_moving);
+    link.judgement = std::make_shared<const PairJudgement>(judged);
     return link;
   }
   LinkId link(std::size_t k) { return snapshot().links()[k].id; }
@@ -44,7 +53,7 @@ TEST_F(SiteModelsTest, TheMapHasStopsHeadingsAndLinks) {
   EXPECT_TRUE(map.stops()[0].pinned) << "scan 0 never moves";
   ASSERT_EQ(map.links().size(), 5U);
   EXPECT_EQ(map.links()[0].quality, LinkQuality::Good);
-  EXPECT_EQ(map.links()[4].quality, LinkQuality::Doubtful);
+  EXPECT_EQ(map.links()[4].quality, LinkQuality::Bad);
   EXPECT_EQ(map.bounds(), QRectF(QPointF(0, 0), QPointF(10, 10)));
   EXPECT_EQ(map.stopAt({9.8, 0.1}, 0.5), id(1));
   EXPECT_FALSE(map.stopAt({5, 5}, 0.5));
@@ -129,15 +138,24 @@ TEST_F(SiteModelsTest, APictureIsPlacedShownAndUndone) {
 TEST_F(SiteModelsTest, TheLinkTableKnowsTheWorstLink) {
   LinkTableModel table(workspace);
   ASSERT_EQ(table.rowCount(), 5);
-  EXPECT_EQ(table.summary(), "5 links: 4 good, 1 doubtful");
+  EXPECT_EQ(table.summary(), "5 links: 4 good, 1 bad");
   const auto badness = [&](int row) {
     return table.index(row, LinkTableModel::Quality).data(LinkTableModel::kSortRole).toDouble();
   };
   for (int row = 0; row < 4; ++row) EXPECT_LT(badness(4), badness(row)) << "ascending, the worst comes first";
   EXPECT_EQ(table.index(0, LinkTableModel::Pair).data().toString(), "0 – 1");
-  EXPECT_EQ(table.index(4, LinkTableModel::Quality).data().toString(), "doubtful");
+  EXPECT_EQ(table.index(4, LinkTableModel::Quality).data().toString(), "bad");
   EXPECT_NEAR(table.index(4, LinkTableModel::Off).data().toDouble(), 538.5, 0.1);
-  EXPECT_TRUE(table.index(4, LinkTableModel::Pair).data(Qt::ToolTipRole).toString().contains("539 mm"));
+  const QString tip = table.index(4, LinkTableModel::Pair).data(Qt::ToolTipRole).toString();
+  EXPECT_TRUE(tip.contains("is bad: the other links put it 54 cm")) << tip.toStdString();
+  EXPECT_TRUE(tip.contains("Overlap: 42 %")) << tip.toStdString();
+  const auto cell = [&](LinkTableModel::Column column) { return table.index(0, column).data().toString(); };
+  EXPECT_EQ(cell(LinkTableModel::Overlap), "42");
+  EXPECT_EQ(cell(LinkTableModel::Fit), "93");
+  EXPECT_EQ(cell(LinkTableModel::Residual), "5.1");
+  EXPECT_NEAR(table.index(4, LinkTableModel::Others).data().toDouble(), 538.5, 0.5);
+  EXPECT_GT(table.index(4, LinkTableModel::Times).data().toDouble(), 5.0);
+  EXPECT_NEAR(table.index(4, LinkTableModel::Loop).data().toDouble(), 538.5, 0.5);
   EXPECT_TRUE(table.index(0, LinkTableModel::Without).data().toString().isEmpty());
 }
 
@@ -166,6 +184,23 @@ TEST_F(SiteModelsTest, WhatIfSaysWhatTheOthersSayAndChangesNothing) {
   EXPECT_FALSE(table.whatIf()) << "an edit ends the question";
   EXPECT_FALSE(map.stops()[2].ghost_m);
   EXPECT_EQ(table.summary(), "5 links: 4 good, 1 disabled");
+}
+
+TEST_F(SiteModelsTest, LinksAreHeldAgainstEachOtherOnlyWhenTheyChange) {
+  LinkTableModel table(workspace);
+  SiteMapModel map(workspace);
+  const int first = workspace.linkOpinions().computed();
+  workspace.display().setStage(Stage::Odometry);
+  must(workspace.session().apply(renameEdit(id(0), "yard")));
+  EXPECT_EQ(workspace.linkOpinions().computed(), first) << "nothing that concerns them";
+  EXPECT_EQ(map.links()[4].quality, LinkQuality::Bad);
+  must(workspace.session().apply(linkStateEdit(link(3), LinkState::Disabled)));
+  EXPECT_EQ(workspace.linkOpinions().computed(), first + 1);
+  must(workspace.session().apply(
+      ProjectEdit{"forget", {SetLinkJudgements{{{link(0), nullptr}}}}, nullptr, {}, {}}));
+  EXPECT_EQ(workspace.linkOpinions().computed(), first + 2);
+  EXPECT_EQ(map.links()[0].quality, LinkQuality::NotJudged);
+  EXPECT_EQ(table.index(0, LinkTableModel::Overlap).data().toString(), "–");
 }
 
 TEST_F(SiteModelsTest, AQuestionEndsWithTheTableThatAskedIt) {

@@ -3,6 +3,10 @@
 
 #include <fstream>
 
+#include <nlohmann/json.hpp>
+
+#include "core/project/judgement_json.h"
+#include "core/project/link_judgement.h"
 #include "core/project/operations/pair_links.h"
 #include "core/world/experiment.h"
 #include "tests/ui/models/model_samples.h"
@@ -168,12 +172,19 @@ TEST_F(StepperModelTest, WrongChoicesAreToldAndDoNothing) {
 TEST_F(StepperModelTest, AcceptStoresOneUndoableLink) {
   stepOnce();
   EXPECT_FALSE(stepper().canAccept());
+  EXPECT_FALSE(stepper().judgement()) << "not before the end";
   runToEnd();
   stepper().goTo(1);  // whichever iteration is shown
   ASSERT_TRUE(stepper().canAccept());
   must(stepper().accept());
   ASSERT_EQ(snapshot().links().size(), 1U);
   EXPECT_EQ(snapshot().links()[0].fixed_from_moving, stepper().result()->fixed_from_moving);
+  // Judged, and with the very figures that judging the project's links gives.
+  ASSERT_TRUE(snapshot().links()[0].judgement && stepper().judgement());
+  EXPECT_EQ(stepper().judgement()->verdict, Verdict::Good) << stepper().judgement()->reason;
+  EXPECT_TRUE(sameJudgement(snapshot().links()[0].judgement.get(), stepper().judgement().get()));
+  EXPECT_EQ(judgementJson(must(judgeLinkScans(snapshot()))[0].judgement),
+            judgementJson(*stepper().judgement()));
   EXPECT_EQ(snapshot().links()[0].origin, LinkOrigin::Automatic);
   EXPECT_TRUE(snapshot().hasStage(Stage::Pairwise));
   EXPECT_TRUE(stepper().isStored());

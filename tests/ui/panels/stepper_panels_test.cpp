@@ -39,8 +39,13 @@ TEST_F(StepperPanelsTest, StepBackRunSliderAndAcceptByMouse) {
   EXPECT_EQ(text("stepper-rms"), rms);
   EXPECT_EQ(text("stepper-motion-03"), cell);
   EXPECT_EQ(text("stepper-iteration"), "Iteration 2 of 3");
+  EXPECT_TRUE(text("stepper-verdict").contains("when the registration has ended"));
   runByMouse();
   EXPECT_TRUE(text("stepper-state").contains(ui::qt(stopReasonSentence(stepper().result()->stop_reason))));
+  ASSERT_TRUE(stepper().judgement());
+  EXPECT_TRUE(text("stepper-verdict").contains(ui::qt(stepper().judgement()->reason).toHtmlEscaped()));
+  for (const char* name : {"Overlap", "Residual", "Held", "Within", "Still pulled", "Moved"})
+    EXPECT_TRUE(text("stepper-judgement").contains(QString(name) + ": ")) << name;
   auto* slider = find<QSlider>("stepper-slider");
   EXPECT_EQ(slider->maximum(), stepper().count());
   slider->setFocus();

@@ -251,6 +251,7 @@ std::vector<EveryAction::Row> EveryAction::rows() {
       {"op.rebase", registered, form("rebase")},
       {"op.merge", registered, form("merge")},
       {"op.link", registered, form("link")},
+      {"op.judge", registered, form("judge")},
       {"job.cancel", [](T& t) { t.working(); }, [](T& t) { return !t.workspace().jobs().busy(); }},
       {"link.accept", link, [](T& t) { return t.snapshot().links().back().origin == LinkOrigin::ByHand; }},
       {"link.disable", link, [](T& t) { return t.snapshot().links()[0].state == LinkState::Disabled; }},
