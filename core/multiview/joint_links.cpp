@@ -114,8 +114,7 @@ void refineLink(JointLink& link, LinkCells& found, const Pose& fixed_from_moving
     found = {fixed_from_moving, cellsOnPatches(fixed, moving, fixed_from_moving, loss.scale_m, settings)};
   if (found.cells.size() < static_cast<std::size_t>(settings.min_pairs)) return;
   LinearSystem system;
-  lineariseCells(fixed, moving, fixed_from_moving, found.cells, loss.scale_m, settings.refine_deviations,
-                 system);
+  lineariseCells(fixed_from_moving, found.cells, loss.scale_m, settings.refine_deviations, system);
   link.fixed_from_moving = fixed_from_moving;
   takeStrongDirections(system, conditioningOf(system, settings.min_eigenvalue), link);
 }

@@ -28,8 +28,13 @@ namespace {
 
 // One metre and one radian: nothing beside what surfaces tell, but a direction that nothing determines stays.
 constexpr double kDamping = 1.0;
-// As a single registration: the data's own scale is taken this often after the annealing, then kept.
+// As a single registration: the data's own scale is taken this often after the annealing, then kept; once is
+// enough where cells have the last word.
 constexpr int kOwnScaleSteps = 3;
+constexpr int kOwnScaleStepsToRefine = 1;
+// Where cells have the last word, poses need no more than some millimetres before, for which one patch in so
+// many does.
+constexpr std::size_t kCoarseStep = 3;
 constexpr double kFinalScale = 0.7;  // of the better links' median residual; ours, on simulated drives
 constexpr double kNarrowBelow_m = 0.005;
 constexpr int kWaitAtMost = 25;
@@ -50,9 +55,14 @@ class JointRelaxation : public RelaxationEngine {
   JointRelaxation(RelaxationInput input, const RelaxationSettings& settings, int threads)
       : RelaxationEngine(std::move(input), settings, threads) {
     const RegistrationSettings& r = settings_.registration;
-    for (const PreparedScanPtr& scan : input_.scans) samples_.push_back(sampledElements(scan->elements, r));
+    const bool refines = refinesCells();
+    for (const PreparedScanPtr& scan : input_.scans) {
+      samples_.push_back(sampledElements(scan->elements, r));
+      if (refines) samples_.back() = everyNth(samples_.back(), kCoarseStep);
+    }
     loss_ = r.loss == Loss::Annealed ? r.loss_end_m : r.loss == Loss::GemanMcClure ? r.loss_scale_m : 0.0;
-    own_scale_steps_left_ = r.loss == Loss::Annealed ? kOwnScaleSteps : 0;
+    own_scale_steps_left_ =
+        r.loss != Loss::Annealed ? 0 : (refines ? kOwnScaleStepsToRefine : kOwnScaleSteps);
     widest_m_ = loss_.scale_m;
     tied_.assign(poses_.size(), 0);
   }
@@ -115,6 +125,19 @@ class JointRelaxation : public RelaxationEngine {
   }
 
  private:
+  // Whether all scans are blocks with cells, which then settle the poses.
+  bool refinesCells() const {
+    const RegistrationSettings& r = settings_.registration;
+    return r.refine && r.loss == Loss::Annealed && std::ranges::all_of(input_.scans, [](const auto& scan) {
+             return scan->raster.has_value() && !scan->cells.empty();
+           });
+  }
+  static std::vector<std::uint32_t> everyNth(const std::vector<std::uint32_t>& all, std::size_t n) {
+    std::vector<std::uint32_t> some;
+    for (std::size_t i = 0; i < all.size(); i += n) some.push_back(all[i]);
+    return some;
+  }
+
   // A pair registered by itself, from the poses it had then.
   struct Attempt {
     int count = 0;

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
-
 #include "core/registration/grid_moments.h"
 #include "core/registration/plane_patch.h"
 
@@ -16,23 +14,15 @@ namespace {
 
 constexpr int kLargestLevel = 5;  // 32 x 32 tiles
 
-// A bound from below on the smallest eigenvalue of a covariance, at least a third of it: the sum of the
-// inverse eigenvalues is that of the principal minors over the determinant.
-double leastResidual(const Eigen::Matrix3d& c) {
-  const double xx = c(1, 1) * c(2, 2) - c(1, 2) * c(1, 2), yy = c(0, 0) * c(2, 2) - c(0, 2) * c(0, 2),
-               zz = c(0, 0) * c(1, 1) - c(0, 1) * c(0, 1);
-  const double minors = xx + yy + zz;
-  if (!(minors > 0.0)) return 0.0;
-  const double determinant = c(0, 0) * xx - c(0, 1) * (c(0, 1) * c(2, 2) - c(1, 2) * c(0, 2)) +
-                             c(0, 2) * (c(0, 1) * c(1, 2) - c(1, 1) * c(0, 2));
-  return determinant / minors;
-}
-
 class Pyramid {
  public:
   Pyramid(const RangeImage& image, const ScannerGeometry& geometry, const RegistrationSettings& settings,
           BlockPatches& out)
-      : settings_(settings), spot_rad_(out.spot_rad), out_(out) {
+      : settings_(settings),
+        spot_rad_(out.spot_rad),
+        most_of_a_plane_(mostOfAPlane(settings.patch_noise_m, settings.patch_floor_m)),
+        most_of_a_rough_plane_(mostOfAPlane(settings.patch_rough_noise_m, settings.patch_rough_floor_m)),
+        out_(out) {
     tileMoments(image, geometry, settings.patch_rows, settings.patch_columns, settings.patch_drop_edges,
                 settings.refine ? &out.cells : nullptr, settings.refine_whole_m, levels_.front());
     while (top_ < kLargestLevel && (level(top_).rows > 1 || level(top_).columns > 1)) {
@@ -57,11 +47,12 @@ class Pyramid {
     // The variance of a uniform line of length L is L^2 / 12.
     const double largest = settings_.patch_block_m * settings_.patch_block_m / 12.0;
     if (level > 0 && covariance.trace() > 2.0 * largest) return split(level, row, column);
-    if (level > 0 && leastResidual(covariance) > mostOfAPlane()) return split(level, row, column);
-    solver_.computeDirect(covariance);
-    const Eigen::Vector3d values = solver_.eigenvalues();
+    // Most of what is no plane is told without its axes.
+    const double least = leastResidual(covariance);
+    if (level > 0 && least > most_of_a_plane_) return split(level, row, column);
+    if (level == 0 && least > std::max(most_of_a_plane_, most_of_a_rough_plane_)) return;
+    const auto [values, axes] = planeAxes(covariance);
     if (level > 0 && values[2] > largest) return split(level, row, column);
-    const Eigen::Matrix3d axes = solver_.eigenvectors();
     const Eigen::Vector3d mean = m.mean();
     const bool planar =
         fitsPlane(mean, values, axes.col(0), settings_.patch_noise_m, settings_.patch_floor_m);
@@ -75,20 +66,28 @@ class Pyramid {
     const Eigen::Vector3d place = mean + *short_m * mean.normalized();
     const ResidualPrior prior{settings_.patch_noise_m, settings_.patch_prior};
     if (!appendPatch(place, values, axes, m.n, out_.elements, prior)) return;
-    const int first_row = row << level, first_column = column << level;
+    paint(level, row, column, patch);
+  }
+
+  // Onto the directions of the block's tiles.
+  void paint(int level, int row, int column, std::uint32_t patch) {
     const MomentGrid& tiles = levels_.front();
     const int last_row = std::min(tiles.rows, (row + 1) << level);
-    const int last_column = std::min(tiles.columns, (column + 1) << level);
-    for (int r = first_row; r < last_row; ++r)
-      for (int c = first_column; c < last_column; ++c)
-        if (const Moments& tile = tiles.at(r, c); tile.n > 0.0)
+    const int first_column = column << level, last_column = std::min(tiles.columns, (column + 1) << level);
+    for (int r = row << level; r < last_row; ++r)
+      for (int c = first_column; c < last_column; ++c) {
+        const Moments& tile = tiles.at(r, c);
+        if (!(tile.n > 0.0)) continue;
+        if (tiles.place.empty())
           out_.raster.paint({tile.x, tile.y, tile.z}, patch);
+        else
+          out_.raster.paintAt(tiles.place[static_cast<std::size_t>(r * tiles.columns + c)], patch);
+      }
   }
 
   // What fitsPlane allows at most, whichever way the plane is seen.
-  double mostOfAPlane() const {
-    const double noise = settings_.patch_noise_m, floor = settings_.patch_floor_m;
-    return 2.0 * (noise * noise + floor * floor);
+  static double mostOfAPlane(double noise_m, double floor_m) {
+    return 2.0 * (noise_m * noise_m + floor_m * floor_m);
   }
 
   void split(int level, int row, int column) {
@@ -99,12 +98,11 @@ class Pyramid {
   }
 
   const RegistrationSettings& settings_;
-  double spot_rad_;
+  double spot_rad_, most_of_a_plane_, most_of_a_rough_plane_;
   BlockPatches& out_;
   int top_ = 0;
   // Fresh memory costs more than what is added up there.
   static thread_local std::array<MomentGrid, kLargestLevel + 1> levels_;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver_;
 };
 
 thread_local std::array<MomentGrid, kLargestLevel + 1> Pyramid::levels_;
@@ -115,7 +113,6 @@ BlockPatches blockPatches(const RangeImage& image, const ScannerGeometry& geomet
                           const RegistrationSettings& settings) {
   BlockPatches out;
   out.spot_rad = image.isRegular() ? settings.patch_spot_rad : 0.0;
-  if (settings.refine) out.cells.reserve(image.validCells());
   Pyramid pyramid(image, geometry, settings, out);
   pyramid.descend();
   out.raster.closeGaps();

@@ -22,11 +22,17 @@ struct CellsOnPatch {
   double cells = 0.0;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();  // in the frame of the cells' scan, m
   double variance_m2 = 0.0;                        // of the mean along the patch's normal
+  // The patch's plane, frame of its scan: normal . p = offset.
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  double offset_m = 0.0;
+  double plane_variance_m2 = 0.0;  // along the normal where the mean lies at the pose
+  double slope_variance = 0.0;     // of the normal, along the surface
 };
 
 // Gives the cells of each scan to the patches of the other that they lie on at the pose: within four
 // deviations of the plane, inside its outline, and seen from the same side. `excess_m` is the deviation of
-// surfaces beyond that of their patches. Empty where a scan has no cells or patches of blocks.
+// surfaces beyond that of their patches. Empty where a scan
+// has no cells or patches of blocks.
 std::vector<CellsOnPatch> cellsOnPatches(const PreparedScan& fixed, const PreparedScan& moving,
                                          const Pose& fixed_from_moving, double excess_m,
                                          const RegistrationSettings& settings);
@@ -34,9 +40,14 @@ std::vector<CellsOnPatch> cellsOnPatches(const PreparedScan& fixed, const Prepar
 // Adds them up as `linearise` does pairs of patches, in the frame of the fixed scan, for a motion of the
 // moving one. What both directions tell rests on the same cells: h and b are halved, so that h is an
 // information.
-void lineariseCells(const PreparedScan& fixed, const PreparedScan& moving, const Pose& fixed_from_moving,
-                    const std::vector<CellsOnPatch>& cells, double excess_m, double deviations,
-                    LinearSystem& system);
+void lineariseCells(const Pose& fixed_from_moving, const std::vector<CellsOnPatch>& cells, double excess_m,
+                    double deviations, LinearSystem& system);
+// The same, for who names the scans that the cells are of.
+inline void lineariseCells(const PreparedScan&, const PreparedScan&, const Pose& fixed_from_moving,
+                           const std::vector<CellsOnPatch>& cells, double excess_m, double deviations,
+                           LinearSystem& system) {
+  lineariseCells(fixed_from_moving, cells, excess_m, deviations, system);
+}
 
 struct Refined {
   Pose fixed_from_moving;

@@ -20,6 +20,15 @@ struct CellSamples {
     z.push_back(static_cast<float>(p.z()));
     count.push_back(static_cast<float>(cells));
   }
+  void clear() {
+    for (std::vector<float>* axis : {&x, &y, &z, &count}) axis->clear();
+  }
+  void append(const CellSamples& other) {
+    x.insert(x.end(), other.x.begin(), other.x.end());
+    y.insert(y.end(), other.y.begin(), other.y.end());
+    z.insert(z.end(), other.z.begin(), other.z.end());
+    count.insert(count.end(), other.count.begin(), other.count.end());
+  }
   void reserve(std::size_t n) {
     for (std::vector<float>* axis : {&x, &y, &z, &count}) axis->reserve(n);
   }

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <span>
 
-#include <Eigen/Eigenvalues>
-
 #include "core/registration/plane_patch.h"
 
 namespace tiltmap {
@@ -43,9 +41,7 @@ class Splitter {
   void split(Points points, int splits_left) {
     if (points.size() < minimum_) return;
     const Spread m = spreadOf(points);
-    solver_.computeDirect(m.covariance);
-    const Eigen::Vector3d values = solver_.eigenvalues();
-    const Eigen::Matrix3d axes = solver_.eigenvectors();
+    const auto [values, axes] = planeAxes(m.covariance);
     const bool last = splits_left == 0 || points.size() < 2 * minimum_;
     const double noise = last ? settings_.patch_rough_noise_m : settings_.patch_noise_m;
     const double floor = last ? settings_.patch_rough_floor_m : settings_.patch_floor_m;
@@ -67,7 +63,6 @@ class Splitter {
   const RegistrationSettings& settings_;
   std::size_t minimum_;
   SurfaceElements& out_;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver_;
 };
 
 // Points by cube, each cube's points side by side, cubes in order of first appearance.

@@ -5,19 +5,20 @@
 #include <optional>
 #include <stdexcept>
 
+#include "core/registration/line_sums.h"
 #include "core/scan/beam_tilts.h"
 
 namespace tiltmap {
 
 namespace {
 
-constexpr float kBend_m = 0.2F;
-
-// Sums over some beams of one line, in the plane of the mirror: the tilt is the same for all, so the three
-// dimensions come in once a tile instead of once a beam.
-struct LineSums {
-  double n = 0.0, c = 0.0, s = 0.0, cc = 0.0, cs = 0.0, ss = 0.0;
+// Fresh memory costs more than what is written there, so each thread keeps its own.
+struct Scratch {
+  std::vector<float> inverse, used;
+  std::vector<double> across, ahead, sums, moments;
+  CellSamples samples;
 };
+thread_local Scratch scratch;
 
 // What the beams of one line have in common: p = arm + c * across + s * ahead, where (c, s) is the range
 // times the cosine and sine of the azimuth.
@@ -37,21 +38,22 @@ struct LinePlane {
 
   Eigen::Vector3d point(double c, double s) const { return arm + c * across + s * ahead; }
 
-  void addTo(Moments& m, const LineSums& k) const {
-    const Eigen::Vector3d first = k.c * across + k.s * ahead;
-    const Eigen::Vector3d a = k.cc * across + k.cs * ahead;
-    const Eigen::Vector3d b = k.cs * across + k.ss * ahead;
-    // sum of (arm + v) (arm + v)^T, v = c across + s ahead
-    const auto second = [&](int i, int j) {
-      return a[i] * across[j] + b[i] * ahead[j] + arm[i] * first[j] + first[i] * arm[j] +
-             k.n * arm[i] * arm[j];
-    };
-    m.n += k.n;
-    m.x += first.x() + k.n * arm.x();
-    m.y += first.y() + k.n * arm.y();
-    m.z += first.z() + k.n * arm.z();
-    m.xx += second(0, 0), m.xy += second(0, 1), m.xz += second(0, 2);
-    m.yy += second(1, 1), m.yz += second(1, 2), m.zz += second(2, 2);
+  // The tilt is the same for a whole line, so the three dimensions come in once a tile, not once a beam.
+  LineToMoments moments() const {
+    LineToMoments by{};
+    std::size_t m = 0;
+    by[m++][0] = 1.0;
+    for (int i = 0; i < 3; ++i) by[m++] = {arm[i], across[i], ahead[i], 0.0, 0.0, 0.0};
+    // (arm + c across + s ahead)_i (...)_j
+    for (int i = 0; i < 3; ++i)
+      for (int j = i; j < 3; ++j)
+        by[m++] = {arm[i] * arm[j],
+                   arm[i] * across[j] + across[i] * arm[j],
+                   arm[i] * ahead[j] + ahead[i] * arm[j],
+                   across[i] * across[j],
+                   across[i] * ahead[j] + ahead[i] * across[j],
+                   ahead[i] * ahead[j]};
+    return by;
   }
 };
 
@@ -61,40 +63,49 @@ class InverseRanges {
  public:
   InverseRanges(const RangeImage& image, const ScannerGeometry& geometry)
       : stride_(static_cast<std::size_t>(image.columns()) + 2) {
-    inverse_.assign(stride_ * (static_cast<std::size_t>(image.rows()) + 2), 0.0F);
     const auto columns = static_cast<std::size_t>(image.columns());
-    const auto offset = static_cast<float>(geometry.range_offset_m);
-    const float* range = image.data().range_m.data();
-    const CellCode* code = image.data().code.data();
+    std::vector<float>& inverse = scratch.inverse;
+    inverse.resize(stride_ * (static_cast<std::size_t>(image.rows()) + 2));
+    std::fill_n(inverse.begin(), stride_, 0.0F);
+    std::fill_n(inverse.end() - static_cast<std::ptrdiff_t>(stride_), stride_, 0.0F);
     for (int row = 0; row < image.rows(); ++row) {
-      float* out = inverse_.data() + (static_cast<std::size_t>(row) + 1) * stride_ + 1;
-      for (std::size_t k = 0; k < columns; ++k)
-        out[k] = cell_code::hasPoint(code[k]) ? 1.0F / (range[k] + offset) : 0.0F;
-      range += columns, code += columns;
+      float* out = inverse.data() + (static_cast<std::size_t>(row) + 1) * stride_ + 1;
+      const std::size_t first = image.index(row, 0);
+      invertRanges(image.data().range_m.data() + first, image.data().code.data() + first, columns,
+                   static_cast<float>(geometry.range_offset_m), out);
+      out[-1] = out[columns] = 0.0F;
     }
   }
   // Of the cells of one row; [-1] and [columns] are 0.
   const float* row(int row) const {
-    return inverse_.data() + (static_cast<std::size_t>(row + 1)) * stride_ + 1;
+    return scratch.inverse.data() + (static_cast<std::size_t>(row + 1)) * stride_ + 1;
   }
 
  private:
   std::size_t stride_;
-  // Fresh memory costs more than what is written there.
-  static thread_local std::vector<float> inverse_;
 };
-thread_local std::vector<float> InverseRanges::inverse_;
 
-void clear(MomentGrid& grid, int rows, int columns) {
+Moments momentsOf(const Eigen::Vector3d& p) {
+  return {1.0,           p.x(),         p.y(),         p.z(),         p.x() * p.x(),
+          p.x() * p.y(), p.x() * p.z(), p.y() * p.y(), p.y() * p.z(), p.z() * p.z()};
+}
+
+void setSize(MomentGrid& grid, int rows, int columns) {
   grid.rows = rows;
   grid.columns = columns;
-  grid.tile.assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), Moments{});
+  grid.tile.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns));
+  grid.place.clear();
+}
+
+void clear(MomentGrid& grid, int rows, int columns) {
+  grid.tile.clear();
+  setSize(grid, rows, columns);
 }
 
 // Whether the cells of a tile lie so near each other that their mean stands for them.
 bool isOne(const Moments& m, double whole_below_m) {
-  const double square = (m.x * m.x + m.y * m.y + m.z * m.z) / m.n;
-  return m.xx + m.yy + m.zz - square < m.n * whole_below_m * whole_below_m;
+  const double square = m.x * m.x + m.y * m.y + m.z * m.z;
+  return (m.xx + m.yy + m.zz) * m.n - square < m.n * m.n * whole_below_m * whole_below_m;
 }
 
 // A scanner's regular matrix: a line at a time, without making points.
@@ -109,155 +120,169 @@ class RegularTiles {
         drop_edges_(drop_edges),
         inverse_(image, geometry),
         columns_(static_cast<std::size_t>(image.columns())),
+        tiles_((columns_ + tile_columns_ - 1) / tile_columns_),
+        stride_(tiles_ * tile_columns_),
+        has_arm_(!geometry.lever_arm_m.isZero(0.0)),
         cosine_(columns_),
-        sine_(columns_),
-        across_(columns_ * static_cast<std::size_t>(tile_rows)),
-        ahead_(across_.size()),
-        used_(across_.size()),
-        // Of a moving line the neighbours are those of the same turn: beams of another one look elsewhere.
-        apart_(tiltMoved(image) ? mirrorTurns(geometry) : 1),
-        two_cos_azimuth_(static_cast<float>(2.0 * std::cos(apart_ * geometry.azimuth_step_rad))) {
+        sine_(columns_) {
     for (std::size_t k = 0; k < columns_; ++k) {
       const double a = geometry.azimuthOfColumn(static_cast<int>(k));
       cosine_[k] = std::cos(a), sine_[k] = std::sin(a);
     }
+    // Of a moving line the neighbours are those of the same turn: beams of another one look elsewhere.
+    rule_.apart = tiltMoved(image) ? mirrorTurns(geometry) : 1;
+    const auto apart = static_cast<double>(rule_.apart);
+    rule_.two_cos_azimuth = static_cast<float>(2.0 * std::cos(apart * geometry.azimuth_step_rad));
     const int rows = image.rows();
     const double step = rows > 1 ? (image.lineTilt(rows - 1) - image.lineTilt(0)) / (rows - 1) : 0.0;
-    two_cos_tilt_ = static_cast<float>(2.0 * std::cos(step));
+    rule_.two_cos_tilt = static_cast<float>(2.0 * std::cos(step));
     if (tiltMoved(image)) tilts_.emplace(image, geometry);
+    const std::size_t cells = stride_ * static_cast<std::size_t>(tile_rows);
+    scratch_.used.assign(cells, 0.0F);
+    scratch_.across.assign(cells, 0.0);
+    scratch_.ahead.assign(cells, 0.0);
+    scratch_.sums.resize(kLineSums * tiles_);
+    scratch_.moments.resize(kTileMoments * tiles_);
+    planes_.reserve(static_cast<std::size_t>(tile_rows));
   }
 
-  // Row after row, from the first.
-  void addLine(int row, Moments* tiles) {
-    if (row % tile_rows_ == 0) planes_.clear();
-    const std::size_t begin = planes_.size() * columns_;
-    float* used = used_.data() + begin;
-    double *across = across_.data() + begin, *ahead = ahead_.data() + begin;
-    chooseCells(row, used);
-    const float* ranges = image_.data().range_m.data() + image_.index(row, 0);
-    for (std::size_t k = 0; k < columns_; ++k) {
-      const double range =
-          static_cast<double>(used[k]) * (static_cast<double>(ranges[k]) + geometry_.range_offset_m);
-      across[k] = range * cosine_[k];
-      ahead[k] = range * sine_[k];
+  // Whether tiles get their places.
+  bool placesTiles() const { return !tilts_; }
+
+  // Row after row, from the first; `tiles` and `place` are those of the row's tiles, complete once their last
+  // line is in.
+  void addLine(int row, Moments* tiles, std::int32_t* place) {
+    if (row % tile_rows_ == 0) {
+      planes_.clear();
+      std::ranges::fill(scratch_.moments, 0.0);
     }
+    const std::size_t begin = planes_.size() * stride_;
+    float* used = scratch_.used.data() + begin;
+    double *across = scratch_.across.data() + begin, *ahead = scratch_.ahead.data() + begin;
+    choose(row, used);
+    placeInLine(used, image_.data().range_m.data() + image_.index(row, 0), columns_, geometry_.range_offset_m,
+                cosine_.data(), sine_.data(), across, ahead);
     const LinePlane& plane = planes_.emplace_back(geometry_, image_.lineTilt(row));
     if (tilts_) {
       addMovingLine(row, begin, tiles);
       return;
     }
-    for (std::size_t first = 0; first < columns_; first += tile_columns_, ++tiles) {
-      const std::size_t last = std::min(columns_, first + tile_columns_);
-      LineSums sums;
-      for (std::size_t k = first; k < last; ++k) {
-        const double c = across[k], s = ahead[k];
-        sums.n += static_cast<double>(used[k]);
-        sums.c += c, sums.s += s;
-        sums.cc += c * c, sums.cs += c * s, sums.ss += s * s;
-      }
-      if (sums.n > 0.0) plane.addTo(*tiles, sums);
+    sumTiles(used, across, ahead, tiles_, tile_columns_, scratch_.sums.data());
+    addLineSums(scratch_.sums.data(), tiles_, plane.moments(), has_arm_, scratch_.moments.data());
+    if ((row + 1) % tile_rows_ == 0 || row + 1 == image_.rows()) {
+      placeTiles(scratch_.moments.data(), tiles_, place);
+      handOver(tiles);
     }
   }
 
   // Of the tiles whose lines came last.
   void sample(const Moments* tiles, double whole_below_m, CellSamples& samples) const {
-    for (std::size_t first = 0; first < columns_; first += tile_columns_, ++tiles) {
+    for (std::size_t first = 0; first < stride_; first += tile_columns_, ++tiles) {
       if (!(tiles->n > 0.0)) continue;
       if (isOne(*tiles, whole_below_m)) {
         samples.add(tiles->mean(), tiles->n);
         continue;
       }
-      const std::size_t last = std::min(columns_, first + tile_columns_);
       for (std::size_t line = 0; line < planes_.size(); ++line)
-        for (std::size_t k = line * columns_ + first; k < line * columns_ + last; ++k)
-          if (used_[k] > 0.0F) samples.add(pointOf(line, k), 1.0);
+        for (std::size_t k = line * stride_ + first; k < line * stride_ + first + tile_columns_; ++k)
+          if (scratch_.used[k] > 0.0F) samples.add(pointOf(line, k), 1.0);
     }
   }
 
  private:
   // Of the cell at `k` of the lines of these tiles.
   Eigen::Vector3d pointOf(std::size_t line, std::size_t k) const {
-    return tilts_ ? points_[k] : planes_[line].point(across_[k], ahead_[k]);
+    return tilts_ ? points_[k] : planes_[line].point(scratch_.across[k], scratch_.ahead[k]);
+  }
+
+  void handOver(Moments* tiles) const {
+    const double* m = scratch_.moments.data();
+    const std::size_t n = tiles_;
+    for (std::size_t t = 0; t < n; ++t, ++m)
+      tiles[t] = {m[0], m[n], m[2 * n], m[3 * n], m[4 * n], m[5 * n], m[6 * n], m[7 * n], m[8 * n], m[9 * n]};
   }
 
   void addMovingLine(int row, std::size_t begin, Moments* tiles) {
     tilts_->setRow(row);
-    points_.resize(across_.size());
+    points_.resize(scratch_.across.size());
     const Eigen::Vector3d across = geometry_.mounting * Eigen::Vector3d::UnitX();
     const Eigen::Vector3d ahead = geometry_.mounting * Eigen::Vector3d::UnitY();
     for (std::size_t k = 0; k < columns_; ++k) {
       const std::size_t cell = begin + k;
-      if (!(used_[cell] > 0.0F)) continue;
-      const Eigen::Vector3d v = geometry_.lever_arm_m + across_[cell] * across + ahead_[cell] * ahead;
+      if (!(scratch_.used[cell] > 0.0F)) continue;
+      const Eigen::Vector3d v =
+          geometry_.lever_arm_m + scratch_.across[cell] * across + scratch_.ahead[cell] * ahead;
       const double c = tilts_->cosine(k), s = tilts_->sine(k);
       const Eigen::Vector3d p(v.x(), c * v.y() - s * v.z(), s * v.y() + c * v.z());
       points_[cell] = p;
-      tiles[k / tile_columns_] += {1.0,           p.x(),         p.y(),         p.z(),         p.x() * p.x(),
-                                   p.x() * p.y(), p.x() * p.z(), p.y() * p.y(), p.y() * p.z(), p.z() * p.z()};
+      tiles[k / tile_columns_] += momentsOf(p);
     }
   }
 
   // 1 where a cell takes part, 0 where not.
-  void chooseCells(int row, float* used) {
+  void choose(int row, float* used) const {
     const float* here = inverse_.row(row);
-    const float* before = inverse_.row(row - 1);
-    const float* after = inverse_.row(row + 1);
-    const std::ptrdiff_t apart = apart_;
-    const float scale = 1.0F / static_cast<float>(apart_ * apart_);
-    for (std::size_t k = 0; k < columns_; ++k) {
-      const float q = here[k];
-      if (!drop_edges_) {
-        used[k] = q > 0.0F ? 1.0F : 0.0F;
-        continue;
-      }
-      const float* at = here + k;
-      const float bend_along = scale * std::abs(at[-apart] + at[apart] - two_cos_azimuth_ * q);
-      const float bend_across = std::abs(before[k] + after[k] - two_cos_tilt_ * q);
-      // |bend| r^2 below the bound; a cell without a point fails on 0 < 0.
-      used[k] = std::max(bend_along, bend_across) < kBend_m * q * q ? 1.0F : 0.0F;
+    if (!drop_edges_) {
+      for (std::size_t k = 0; k < columns_; ++k) used[k] = here[k] > 0.0F ? 1.0F : 0.0F;
+      return;
     }
-    // Further out than one, the border's neighbours are cells of another row.
-    if (!drop_edges_ || apart_ == 1) return;
-    for (std::size_t k = 0; k < columns_; ++k)
-      if (k < static_cast<std::size_t>(apart_) || k + static_cast<std::size_t>(apart_) >= columns_)
-        used[k] = 0.0F;
+    // Further out than one, the border's neighbours are cells of another row, or none.
+    const auto border = static_cast<std::size_t>(rule_.apart - 1);
+    if (2 * border >= columns_) {
+      std::fill_n(used, columns_, 0.0F);
+      return;
+    }
+    std::fill_n(used, border, 0.0F);
+    std::fill_n(used + columns_ - border, border, 0.0F);
+    const float *before = inverse_.row(row - 1), *after = inverse_.row(row + 1);
+    chooseCells(before + border, here + border, after + border, columns_ - 2 * border, rule_, used + border);
   }
 
+  Scratch& scratch_ = scratch;
   const RangeImage& image_;
   const ScannerGeometry& geometry_;
   int tile_rows_;
   std::size_t tile_columns_;
   bool drop_edges_;
   InverseRanges inverse_;
-  std::size_t columns_;
-  std::vector<double> cosine_, sine_, across_, ahead_;
-  std::vector<float> used_;
+  std::size_t columns_, tiles_;
+  std::size_t stride_;  // of a line's cells: whole tiles
+  bool has_arm_;
+  std::vector<double> cosine_, sine_;
+  BendRule rule_;
   std::vector<LinePlane> planes_;        // of the lines since the tiles began
-  int apart_;                            // columns between beams of one turn of the mirror
   std::optional<BeamTilts> tilts_;       // where the tilt moved on
   std::vector<Eigen::Vector3d> points_;  // then: of the lines since the tiles began
-  float two_cos_azimuth_, two_cos_tilt_ = 2.0F;
 };
+
+void tileRegular(const RangeImage& image, const ScannerGeometry& geometry, int tile_rows, int tile_columns,
+                 bool drop_edges, CellSamples* samples, double whole_below_m, MomentGrid& grid) {
+  RegularTiles lines(image, geometry, tile_rows, tile_columns, drop_edges);
+  if (lines.placesTiles()) grid.place.resize(grid.tile.size());
+  CellSamples& sampled = scratch.samples;
+  sampled.clear();
+  for (int row = 0; row < image.rows(); ++row) {
+    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(row / tile_rows) * grid.columns;
+    Moments* tiles = grid.tile.data() + first;
+    lines.addLine(row, tiles, grid.place.data() + (grid.place.empty() ? 0 : first));
+    if (samples && ((row + 1) % tile_rows == 0 || row + 1 == image.rows()))
+      lines.sample(tiles, whole_below_m, sampled);
+  }
+  if (samples) samples->append(sampled);
+}
 
 }  // namespace
 
-Moments& Moments::operator+=(const Moments& other) {
-  n += other.n;
-  x += other.x, y += other.y, z += other.z;
-  xx += other.xx, xy += other.xy, xz += other.xz;
-  yy += other.yy, yz += other.yz, zz += other.zz;
-  return *this;
-}
-
 Eigen::Matrix3d Moments::covariance() const {
-  const Eigen::Vector3d m = mean();
+  const double share = 1.0 / n;
+  const double mx = share * x, my = share * y, mz = share * z;
   Eigen::Matrix3d c;
-  c(0, 0) = xx / n - m.x() * m.x();
-  c(1, 0) = c(0, 1) = xy / n - m.x() * m.y();
-  c(2, 0) = c(0, 2) = xz / n - m.x() * m.z();
-  c(1, 1) = yy / n - m.y() * m.y();
-  c(2, 1) = c(1, 2) = yz / n - m.y() * m.z();
-  c(2, 2) = zz / n - m.z() * m.z();
+  c(0, 0) = share * xx - mx * mx;
+  c(1, 0) = c(0, 1) = share * xy - mx * my;
+  c(2, 0) = c(0, 2) = share * xz - mx * mz;
+  c(1, 1) = share * yy - my * my;
+  c(2, 1) = c(1, 2) = share * yz - my * mz;
+  c(2, 2) = share * zz - mz * mz;
   return c;
 }
 
@@ -271,18 +296,14 @@ MomentGrid tileMoments(const RangeImage& image, const ScannerGeometry& geometry,
 void tileMoments(const RangeImage& image, const ScannerGeometry& geometry, int tile_rows, int tile_columns,
                  bool drop_edges, CellSamples* samples, double whole_below_m, MomentGrid& grid) {
   if (tile_rows < 1 || tile_columns < 1) throw std::invalid_argument("tileMoments: a tile has no cells");
-  clear(grid, (image.rows() + tile_rows - 1) / tile_rows,
-        (image.columns() + tile_columns - 1) / tile_columns);
-  if (image.isRegular()) {
-    RegularTiles lines(image, geometry, tile_rows, tile_columns, drop_edges);
-    for (int row = 0; row < image.rows(); ++row) {
-      Moments* tiles = grid.tile.data() + static_cast<std::ptrdiff_t>(row / tile_rows) * grid.columns;
-      lines.addLine(row, tiles);
-      if (samples && ((row + 1) % tile_rows == 0 || row + 1 == image.rows()))
-        lines.sample(tiles, whole_below_m, *samples);
-    }
-    return;
-  }
+  const int rows = (image.rows() + tile_rows - 1) / tile_rows;
+  const int columns = (image.columns() + tile_columns - 1) / tile_columns;
+  if (image.isRegular() && !tiltMoved(image))
+    setSize(grid, rows, columns);  // every tile is written
+  else
+    clear(grid, rows, columns);
+  if (image.isRegular())
+    return tileRegular(image, geometry, tile_rows, tile_columns, drop_edges, samples, whole_below_m, grid);
   const auto tileOf = [&](int row, int column) -> Moments& {
     return grid.tile[static_cast<std::size_t>(row / tile_rows * grid.columns + column / tile_columns)];
   };
@@ -290,8 +311,7 @@ void tileMoments(const RangeImage& image, const ScannerGeometry& geometry, int t
     for (int column = 0; column < image.columns(); ++column) {
       if (!image.hasPoint(row, column)) continue;
       const Eigen::Vector3d p = cellPoint(image, geometry, row, column);
-      tileOf(row, column) += {1.0,           p.x(),         p.y(),         p.z(),         p.x() * p.x(),
-                              p.x() * p.y(), p.x() * p.z(), p.y() * p.y(), p.y() * p.z(), p.z() * p.z()};
+      tileOf(row, column) += momentsOf(p);
     }
   if (!samples) return;
   for (const Moments& tile : grid.tile)
@@ -303,10 +323,17 @@ void tileMoments(const RangeImage& image, const ScannerGeometry& geometry, int t
 }
 
 void halve(const MomentGrid& fine, MomentGrid& coarse) {
-  clear(coarse, (fine.rows + 1) / 2, (fine.columns + 1) / 2);
-  for (int row = 0; row < fine.rows; ++row)
-    for (int column = 0; column < fine.columns; ++column)
-      coarse.tile[static_cast<std::size_t>(row / 2 * coarse.columns + column / 2)] += fine.at(row, column);
+  setSize(coarse, (fine.rows + 1) / 2, (fine.columns + 1) / 2);
+  for (int row = 0; row < coarse.rows; ++row) {
+    Moments* out = coarse.tile.data() + static_cast<std::ptrdiff_t>(row) * coarse.columns;
+    for (int column = 0; column < coarse.columns; ++column, ++out) {
+      *out = fine.at(2 * row, 2 * column);
+      const bool right = 2 * column + 1 < fine.columns, below = 2 * row + 1 < fine.rows;
+      if (right) *out += fine.at(2 * row, 2 * column + 1);
+      if (below) *out += fine.at(2 * row + 1, 2 * column);
+      if (right && below) *out += fine.at(2 * row + 1, 2 * column + 1);
+    }
+  }
 }
 
 }  // namespace tiltmap

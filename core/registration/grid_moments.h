@@ -1,6 +1,7 @@
 // Sums over tiles of a range matrix, from which the plane of any union of tiles follows without its points.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
@@ -18,7 +19,13 @@ struct Moments {
   double x = 0.0, y = 0.0, z = 0.0;
   double xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;
 
-  Moments& operator+=(const Moments& other);
+  Moments& operator+=(const Moments& other) {
+    n += other.n;
+    x += other.x, y += other.y, z += other.z;
+    xx += other.xx, xy += other.xy, xz += other.xz;
+    yy += other.yy, yz += other.yz, zz += other.zz;
+    return *this;
+  }
   Eigen::Vector3d mean() const { return {x / n, y / n, z / n}; }
   Eigen::Matrix3d covariance() const;  // about the mean, divided by n
 };
@@ -28,6 +35,9 @@ struct MomentGrid {
   int rows = 0;
   int columns = 0;
   std::vector<Moments> tile;
+  // Where each tile's middle lies in a PatchRaster, or empty where nobody has looked; of a tile without cells
+  // any place.
+  std::vector<std::int32_t> place;
 
   const Moments& at(int row, int column) const {
     return tile[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +

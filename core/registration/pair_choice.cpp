@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/registration/moved_cells.h"
+
 namespace tiltmap {
 
 namespace {
@@ -77,31 +79,82 @@ std::uint32_t projective(const PreparedScan& to, const DirectionIndex& direction
 }
 
 // How far a place is from a patch as a disc, squared: across its plane, and beyond its edge along it.
-float discDistance(const PatchDisc& disc, const Eigen::Vector3f& p) {
-  const float dx = p.x() - disc.x, dy = p.y() - disc.y, dz = p.z() - disc.z;
+float discDistance(const PatchDisc& disc, float x, float y, float z) {
+  const float dx = x - disc.x, dy = y - disc.y, dz = z - disc.z;
   const float across = dx * disc.nx + dy * disc.ny + dz * disc.nz;
   const float u = std::max(0.0F, std::abs(dx * disc.ux + dy * disc.uy + dz * disc.uz) - disc.reach_u);
   const float v = std::max(0.0F, std::abs(dx * disc.vx + dy * disc.vy + dz * disc.vz) - disc.reach_v);
   return across * across + u * u + v * v;
 }
 
-// The same among the patches of a matrix, which are of very different sizes.
-std::uint32_t seenPatch(const PreparedScan& to, const Query& query, int reach, float min_cos,
-                        float enough_square) {
-  const Eigen::Vector3f position = query.position.cast<float>(), normal = query.normal.cast<float>();
-  const PatchDisc* discs = to.discs.data();
-  std::uint32_t best = kNobody, any = kNobody;
-  float best_square = std::numeric_limits<float>::infinity();
-  to.raster->around(query.position, reach, [&](std::uint32_t patch) {
-    if (any == kNobody) any = patch;
-    const PatchDisc& disc = discs[patch];
-    if (disc.nx * normal.x() + disc.ny * normal.y() + disc.nz * normal.z() < min_cos) return true;
-    const float square = discDistance(disc, position);
-    if (square < best_square) best_square = square, best = patch;
-    return best_square > enough_square;
-  });
-  return best == kNobody ? any : best;
-}
+// The projective choice among the patches of a matrix, which are of very different sizes.
+class SeenPatches {
+ public:
+  SeenPatches(const PreparedScan& from, const PreparedScan& to, const Pose& to_from_from, bool from_is_fixed,
+              bool wide, double min_cos)
+      : from_(from.elements),
+        to_(to),
+        motion_(to_from_from),
+        from_is_fixed_(from_is_fixed),
+        reach_(wide ? 3 : 1),
+        min_cos_(static_cast<float>(min_cos)),
+        enough_square_(wide ? 0.0F : kSamePatch_m * kSamePatch_m) {}
+
+  void pair(std::span<const std::uint32_t> sample, std::vector<Correspondence>& pairs) {
+    for (std::size_t begin = 0; begin < sample.size(); begin += MovedPatches::kMost) {
+      const auto some = sample.subspan(begin, std::min(MovedPatches::kMost, sample.size() - begin));
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        const Eigen::Vector3d &p = from_.position[some[i]], &n = from_.normal[some[i]];
+        moved_.x[i] = static_cast<float>(p.x()), moved_.nx[i] = static_cast<float>(n.x());
+        moved_.y[i] = static_cast<float>(p.y()), moved_.ny[i] = static_cast<float>(n.y());
+        moved_.z[i] = static_cast<float>(p.z()), moved_.nz[i] = static_cast<float>(n.z());
+      }
+      movePatches(some.size(), motion_, moved_);
+      for (std::size_t i = 0; i < some.size(); ++i) pairs.push_back(pairOf(some[i], i));
+    }
+  }
+
+ private:
+  Correspondence pairOf(std::uint32_t index, std::size_t i) const {
+    const float x = moved_.x[i], y = moved_.y[i], z = moved_.z[i];
+    const float nx = moved_.nx[i], ny = moved_.ny[i], nz = moved_.nz[i];
+    const auto cosine = [&](const PatchDisc& disc) { return disc.nx * nx + disc.ny * ny + disc.nz * nz; };
+    std::uint32_t best = kNobody, any = kNobody;
+    float best_square = std::numeric_limits<float>::infinity();
+    if (x * x + y * y + z * z > 1e-12F)
+      to_.raster->aroundIndex(moved_.place[i], reach_, [&](std::uint32_t patch) {
+        if (any == kNobody) any = patch;
+        const PatchDisc& disc = to_.discs[patch];
+        if (cosine(disc) < min_cos_) return true;
+        const float square = discDistance(disc, x, y, z);
+        if (square < best_square) best_square = square, best = patch;
+        return best_square > enough_square_;
+      });
+    const std::uint32_t partner = best == kNobody ? any : best;
+    Correspondence pair;
+    pair.from_fixed = from_is_fixed_;
+    (from_is_fixed_ ? pair.fixed : pair.moving) = index;
+    if (partner == kNobody) {
+      pair.reason = RejectReason::NoPartner;
+      return pair;
+    }
+    (from_is_fixed_ ? pair.moving : pair.fixed) = partner;
+    const PatchDisc& disc = to_.discs[partner];
+    const float dx = disc.x - x, dy = disc.y - y, dz = disc.z - z;
+    pair.distance_m = std::sqrt(dx * dx + dy * dy + dz * dz);
+    pair.has_normals = nx * nx + ny * ny + nz * nz > 0.5F;
+    if (pair.has_normals) pair.cos_angle = cosine(disc);
+    return pair;
+  }
+
+  const SurfaceElements& from_;
+  const PreparedScan& to_;
+  FloatPose motion_;
+  bool from_is_fixed_;
+  int reach_;
+  float min_cos_, enough_square_;
+  MovedPatches moved_;
+};
 
 }  // namespace
 
@@ -113,12 +166,16 @@ void choosePairs(const PreparedScan& from, const PreparedScan& to, const Pose& t
       (by_direction ? !to.directions.has_value() && !to.raster.has_value() : !to.tree.has_value()))
     throw std::logic_error("choosePairs: the scan was not prepared for this pair choice");
   const bool wide = loss_scale_m > settings.wide_search_above_m;
+  if (by_direction && to.raster) {
+    SeenPatches(from, to, to_from_from, from_is_fixed, wide, std::cos(settings.max_angle_rad))
+        .pair(sample, pairs);
+    return;
+  }
   const auto& directions = wide ? to.wide_directions : to.directions;
   const Eigen::Matrix3d rotation = to_from_from.rotation();
   const Eigen::Vector3d shift = to_from_from.translation();
   const double min_cos = std::cos(settings.max_angle_rad);
   std::vector<KdTree::Neighbour> scratch;
-  const float enough_square = wide ? 0.0F : kSamePatch_m * kSamePatch_m;
   for (const std::uint32_t index : sample) {
     Query query{rotation * from.elements.position[index] + shift, rotation * from.elements.normal[index],
                 false};
@@ -136,8 +193,7 @@ void choosePairs(const PreparedScan& from, const PreparedScan& to, const Pose& t
           partner = normalShooting(to, query, scratch);
           break;
         case PairChoice::Projective:
-          partner = to.raster ? seenPatch(to, query, wide ? 3 : 1, static_cast<float>(min_cos), enough_square)
-                              : projective(to, *directions, query, min_cos);
+          partner = projective(to, *directions, query, min_cos);
           break;
       }
     }

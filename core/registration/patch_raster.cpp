@@ -1,5 +1,7 @@
 #include "core/registration/patch_raster.h"
 
+#include <algorithm>
+
 namespace tiltmap {
 
 PatchRaster::PatchRaster() : cell_(static_cast<std::size_t>(kRows) * kColumns, kNone) {}
@@ -17,22 +19,28 @@ void PatchRaster::paint(const Eigen::Vector3d& p, std::uint32_t patch) {
 }
 
 void PatchRaster::closeGaps() {
-  const std::vector<std::uint32_t> painted = cell_;
-  const auto fill = [&](int row, int column) {
-    const auto at = [&](int r, int k) {
-      if (k < 0 || k >= kColumns) return kNone;
-      return painted[static_cast<std::size_t>((r + kRows) % kRows * kColumns + k)];
-    };
-    for (const std::uint32_t near :
-         {at(row - 1, column), at(row + 1, column), at(row, column - 1), at(row, column + 1)})
-      if (near != kNone) return near;
-    return kNone;
+  // A copy with a border of empty cells at both ends of a row; rows go all round.
+  constexpr std::size_t kColumnsWithBorder = static_cast<std::size_t>(kColumns) + 2;
+  static thread_local std::vector<std::uint32_t> copy;  // fresh memory costs more than what is done there
+  copy.assign(kColumnsWithBorder * (static_cast<std::size_t>(kRows) + 2), kNone);
+  const auto rowOf = [&](int row) {
+    return copy.data() + static_cast<std::size_t>(row + 1) * kColumnsWithBorder;
   };
-  for (int row = 0; row < kRows; ++row)
-    for (int column = 0; column < kColumns; ++column) {
-      const auto here = static_cast<std::size_t>(row * kColumns + column);
-      if (painted[here] == kNone) cell_[here] = fill(row, column);
+  for (int row = -1; row <= kRows; ++row)
+    std::copy_n(cell_.begin() + static_cast<std::ptrdiff_t>((row + kRows) % kRows * kColumns), kColumns,
+                rowOf(row) + 1);
+  for (int row = 0; row < kRows; ++row) {
+    const std::uint32_t *above = rowOf(row - 1) + 1, *here = rowOf(row) + 1, *under = rowOf(row + 1) + 1;
+    std::uint32_t* out = cell_.data() + static_cast<std::size_t>(row) * kColumns;
+    for (std::ptrdiff_t k = 0; k < kColumns; ++k) {
+      // The first that is painted of these; without branches.
+      std::uint32_t patch = here[k + 1];
+      patch = here[k - 1] != kNone ? here[k - 1] : patch;
+      patch = under[k] != kNone ? under[k] : patch;
+      patch = above[k] != kNone ? above[k] : patch;
+      out[k] = here[k] != kNone ? here[k] : patch;
     }
+  }
 }
 
 }  // namespace tiltmap

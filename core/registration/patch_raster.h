@@ -19,6 +19,7 @@ class PatchRaster {
 
   // `patch` is seen in the direction of `p` (scan frame). The last one painted stays.
   void paint(const Eigen::Vector3d& p, std::uint32_t patch);
+  void paintAt(std::int32_t index, std::uint32_t patch) { cell_[static_cast<std::size_t>(index)] = patch; }
   // Gives each empty cell what a painted neighbour holds, so that beams between two tiles are no gaps.
   void closeGaps();
 

@@ -9,6 +9,23 @@
 
 namespace tiltmap {
 
+// A covariance's eigenvalues, ascending, and its eigenvectors, a column each: unit, at right angles, of any
+// sign.
+struct PlaneAxes {
+  Eigen::Vector3d values = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+};
+
+// For groups that are about planes: Newton's method finds the least root of the characteristic polynomial
+// from below, and what is left is a quadratic. No trigonometry; several times faster than a solver for any
+// matrix. `covariance` must be symmetric and not negative. Where the two smaller eigenvalues are nearly the
+// same (points along a line), they may be off by a hundredth of themselves and their axes by any turn about
+// the line.
+PlaneAxes planeAxes(const Eigen::Matrix3d& covariance);
+
+// A bound from below on the least eigenvalue, at least a third of it: the first of Newton's steps.
+double leastResidual(const Eigen::Matrix3d& covariance);
+
 // `values` are the eigenvalues of the group's covariance, ascending; `normal` the first eigenvector. Planar
 // when the residual is below sqrt(2) sqrt((noise cos incidence)^2 + floor^2); metres, scan frame.
 bool fitsPlane(const Eigen::Vector3d& mean, const Eigen::Vector3d& values, const Eigen::Vector3d& normal,

@@ -154,10 +154,11 @@ StepReport Registration::step(const std::stop_token& stop) {
 }
 
 void Registration::findPairsOfStep(StepReport& report) {
-  // Annealing needs no fine pose; blocks are many.
+  // Annealing needs no fine pose, nor does what cells will refine; blocks are many.
   const bool blocks = bothAreBlocks() && settings_.loss == Loss::Annealed;
-  const bool coarse = settings_.pair_choice == PairChoice::Projective && !loss_.isOwn() &&
-                      (blocks || loss_.scale_m > settings_.wide_search_above_m);
+  const bool early =
+      loss_.isOwn() ? blocks && settings_.refine : blocks || loss_.scale_m > settings_.wide_search_above_m;
+  const bool coarse = settings_.pair_choice == PairChoice::Projective && early;
   report.rejected =
       findPairs(*fixed_, *moving_, pose_, coarse ? wide_fixed_sample_ : fixed_sample_,
                 coarse ? wide_sample_ : moving_sample_, loss_.scale_m, settings_, rejection_, pairs_);

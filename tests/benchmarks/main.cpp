@@ -11,7 +11,9 @@
 #include "core/base/text.h"
 #include "core/scan/point_cloud.h"
 #include "core/scan/range_image.h"
+#include "tests/benchmarks/ablation_run.h"
 #include "tests/benchmarks/capture_run.h"
+#include "tests/benchmarks/drive_run.h"
 #include "tests/benchmarks/limits.h"
 #include "tests/benchmarks/machine.h"
 #include "tests/benchmarks/operations.h"
@@ -25,12 +27,13 @@ namespace tiltmap::benchmarks {
 
 namespace {
 
-const std::vector<std::string> kBlocks = {"operations", "pairs",  "real",   "program",
-                                          "capture",    "window", "verdict"};
+const std::vector<std::string> kBlocks = {"operations", "pairs",   "drives", "ablations", "real",
+                                          "program",    "capture", "window", "verdict"};
 
 struct Options {
   std::vector<std::string> blocks = kBlocks;
   std::string seeds = "1-2";
+  std::string tuning_seeds = "101-102";
   int rounds = 3;
   bool ours_only = false;
   bool json = false;
@@ -82,40 +85,55 @@ void addOperations(Table& table, const Options& options, const Tell& tell) {
   addOperationRows(table, operations, std::max(3, options.rounds));
 }
 
-// All seeds of one experiment; false where a limit does not hold.
-bool addPairs(Table& table, ExperimentId experiment, std::pair<int, int> seeds, const Options& options,
-              const Tell& tell) {
-  const std::vector<PairMethod> list = methods(options.ours_only);
+// A row of what is no program: the start, the noise floor.
+Row rowOfNone(const std::string& subject, const std::string& name, const std::vector<double>& metres,
+              const std::vector<double>& radians) {
+  Row row{.subject = subject, .program = name};
+  row.median_mm = median(metres) * 1e3;
+  row.median_deg = median(radians) / kDegree;
+  row.most_mm = quantile(metres, 0.95) * 1e3;
+  row.worst_mm = *std::max_element(metres.begin(), metres.end()) * 1e3;
+  row.worst_deg = *std::max_element(radians.begin(), radians.end()) / kDegree;
+  return row;
+}
+
+// All seeds of one experiment.
+std::vector<PairMeasurement> addPairs(Table& table, ExperimentId experiment, std::pair<int, int> seeds,
+                                      const std::vector<PairMethod>& list, int rounds, const Tell& tell) {
   std::vector<PairMeasurement> all;
-  std::vector<double> start_m, start_rad;
+  std::vector<double> start_m, start_rad, floor_m, floor_rad;
   for (int seed = seeds.first; seed <= seeds.second; ++seed) {
     const std::vector<PairProblem> pairs = simulatedPairs(experiment, static_cast<std::uint64_t>(seed));
     for (const PairProblem& pair : pairs) {
       const PoseDifference start = difference(pair.start_fixed_from_moving, *pair.true_fixed_from_moving);
       start_m.push_back(start.translation_m);
       start_rad.push_back(start.rotation_rad);
+      floor_m.push_back(pair.floor->translation_m);
+      floor_rad.push_back(pair.floor->rotation_rad);
     }
     const OneThread limit;
-    const std::vector<PairMeasurement> some = runPairs(pairs, list, options.rounds, tell);
+    const std::vector<PairMeasurement> some = runPairs(pairs, list, rounds, tell);
     all.insert(all.end(), some.begin(), some.end());
   }
   const std::string subject = std::string(nameOf(experiment)) + ", seeds " + std::to_string(seeds.first) +
                               " to " + std::to_string(seeds.second) + ": " + std::to_string(start_m.size()) +
                               " neighbouring pairs against the truth";
-  Row start{.subject = subject, .program = "(odometry, the start)"};
-  start.median_mm = median(start_m) * 1e3;
-  start.median_deg = median(start_rad) / kDegree;
-  start.worst_mm = *std::max_element(start_m.begin(), start_m.end()) * 1e3;
-  start.worst_deg = *std::max_element(start_rad.begin(), start_rad.end()) / kDegree;
-  table.rows.push_back(start);
+  table.rows.push_back(rowOfNone(subject, "(odometry, the start)", start_m, start_rad));
+  table.rows.push_back(rowOfNone(subject, "(noise floor)", floor_m, floor_rad));
   addPairRows(table, subject, list, all);
+  return all;
+}
+
+// False where a limit does not hold.
+bool keepsLimits(Table& table, ExperimentId experiment, const std::vector<PairMethod>& list,
+                 const std::vector<PairMeasurement>& all) {
   const std::vector<std::string> broken = brokenLimits(list, all);
   for (const std::string& limit : broken)
     table.notes.push_back("Limit not kept, " + std::string(nameOf(experiment)) + ": " + limit);
   return broken.empty();
 }
 
-int measure(const Options& options, std::pair<int, int> seeds) {
+int measure(const Options& options, std::pair<int, int> seeds, std::pair<int, int> tuning_seeds) {
   const Tell tell = [&options](const std::string& what) {
     if (!options.quiet) std::cerr << "  " << what << std::endl;
   };
@@ -128,12 +146,23 @@ int measure(const Options& options, std::pair<int, int> seeds) {
       "          ours from the raw matrices, the peers' from a cloud of points, all preparation included");
   table.heading.push_back("          x ours: CPU time over that of our first row");
   table.heading.push_back(
+      "errors    x floor: over the noise floor (Cramer-Rao) of the same pair, the median of that");
+  table.heading.push_back(
       "peers     0.5 m voxels, pairs up to 3 m, at most 60 iterations, 20 neighbours for normals");
   bool kept = true;
   if (blocks.contains("operations")) addOperations(table, options, tell);
-  if (blocks.contains("pairs"))
+  for (const ExperimentId experiment : {ExperimentId::Exp1, ExperimentId::Exp2Fixed}) {
+    if (blocks.contains("pairs")) {
+      const std::vector<PairMethod> list = methods(options.ours_only);
+      const auto all = addPairs(table, experiment, seeds, list, options.rounds, tell);
+      kept = keepsLimits(table, experiment, list, all) && kept;
+    }
+    if (blocks.contains("drives"))
+      addDriveRows(table, experiment, seeds, options.program, options.scratch, options.rounds, tell);
+  }
+  if (blocks.contains("ablations"))
     for (const ExperimentId experiment : {ExperimentId::Exp1, ExperimentId::Exp2Fixed})
-      kept = addPairs(table, experiment, seeds, options, tell) && kept;
+      addPairs(table, experiment, tuning_seeds, ablations(), options.rounds, tell);
   if (blocks.contains("real")) {
     const OneThread limit;
     addRealRows(table, methods(options.ours_only), options.rounds, tell);
@@ -170,6 +199,8 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember(kBlocks))
       ->capture_default_str();
   app.add_option("--seeds", options.seeds, "Simulated sites: 1-2, 1-5, 1-10, ...")->capture_default_str();
+  app.add_option("--tuning-seeds", options.tuning_seeds, "Simulated sites of the ablations")
+      ->capture_default_str();
   app.add_option("--rounds", options.rounds, "Turns of which the quietest counts")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
@@ -181,12 +212,13 @@ int main(int argc, char** argv) {
   app.add_option("--program", options.program, "The tiltmap to run as a process")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   const auto seeds = seedRange(options.seeds);
-  if (!seeds) {
-    std::cerr << "--seeds: give a range like 1-5\n";
+  const auto tuning_seeds = seedRange(options.tuning_seeds);
+  if (!seeds || !tuning_seeds) {
+    std::cerr << "--seeds, --tuning-seeds: give a range like 1-5\n";
     return 2;
   }
   try {
-    return measure(options, *seeds);
+    return measure(options, *seeds, *tuning_seeds);
   } catch (const std::exception& error) {
     std::cerr << "the benchmarks stopped: " << error.what() << '\n';
     return 1;

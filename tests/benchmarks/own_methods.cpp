@@ -3,11 +3,8 @@
 
 namespace tiltmap::benchmarks {
 
-namespace {
-
-PairMethod ownMethod(const std::string& preset) {
-  return {"Tiltmap " + preset, [preset](const PairProblem& pair) -> TimedJob {
-            const RegistrationSettings settings = *registrationParameters().presetSettings(preset);
+PairMethod ownMethod(const std::string& name, const RegistrationSettings& settings) {
+  return {name, [settings](const PairProblem& pair) -> TimedJob {
             return [fixed = pair.fixed, moving = pair.moving, start = pair.start_fixed_from_moving,
                     settings]() -> Result<Pose> {
               const Result<PairResult> result = registerPair(fixed, moving, start, settings);
@@ -19,10 +16,12 @@ PairMethod ownMethod(const std::string& preset) {
           }};
 }
 
-}  // namespace
-
 std::vector<PairMethod> ownMethods() {
-  return {ownMethod("default"), ownMethod("thesis")};
+  std::vector<PairMethod> methods;
+  for (const char* preset : {"default", "thesis"})
+    methods.push_back(
+        ownMethod(std::string("Tiltmap ") + preset, *registrationParameters().presetSettings(preset)));
+  return methods;
 }
 
 }  // namespace tiltmap::benchmarks

@@ -10,7 +10,9 @@
 
 #include "core/base/result.h"
 #include "core/geometry/pose.h"
+#include "core/registration/registration_settings.h"
 #include "core/scan/range_image.h"
+#include "tests/benchmarks/noise_floor.h"
 
 namespace tiltmap::benchmarks {
 
@@ -21,6 +23,7 @@ struct PairProblem {
   Scan moving;
   Pose start_fixed_from_moving;
   std::optional<Pose> true_fixed_from_moving;
+  std::optional<NoiseFloor> floor{};  // of simulated pairs
 };
 
 // What is timed: from the scans in memory, in the method's own type, to the pose. All preparation (thinning,
@@ -42,7 +45,8 @@ inline constexpr int kIterations = 60;
 // Neighbours for normals and covariances, where the peer needs any.
 inline constexpr int kNeighbours = 20;
 
-std::vector<PairMethod> ownMethods();
+PairMethod ownMethod(const std::string& name, const RegistrationSettings& settings);
+std::vector<PairMethod> ownMethods();  // the presets default and thesis
 std::vector<PairMethod> pclMethods();
 std::vector<PairMethod> open3dMethods();
 

@@ -14,7 +14,7 @@ std::string share(std::size_t part, std::size_t whole) {
 
 Row rowOf(const std::string& subject, const PairMethod& method,
           const std::vector<const PairMeasurement*>& own) {
-  std::vector<double> wall, cpu, metres, radians;
+  std::vector<double> wall, cpu, metres, radians, floors;
   std::size_t failed = 0;
   std::size_t good = 0;
   for (const PairMeasurement* m : own) {
@@ -22,6 +22,7 @@ Row rowOf(const std::string& subject, const PairMethod& method,
     cpu.push_back(m->timing.cpu_ms);
     metres.push_back(m->error.translation_m);
     radians.push_back(m->error.rotation_rad);
+    if (m->times_floor > 0.0) floors.push_back(m->times_floor);
     failed += m->fixed_from_moving ? 0 : 1;
     good += m->fixed_from_moving && m->error.translation_m <= kGoodM ? 1 : 0;
   }
@@ -30,6 +31,8 @@ Row rowOf(const std::string& subject, const PairMethod& method,
   row.cpu_ms = median(cpu);
   row.median_mm = median(metres) * 1e3;
   row.median_deg = median(radians) / kDegree;
+  if (!floors.empty()) row.times_floor = median(floors);
+  row.most_mm = quantile(metres, 0.95) * 1e3;
   row.worst_mm = *std::max_element(metres.begin(), metres.end()) * 1e3;
   row.worst_deg = *std::max_element(radians.begin(), radians.end()) / kDegree;
   row.within = share(good, own.size());
@@ -47,6 +50,14 @@ double median(std::vector<double> values) {
   if (values.size() % 2 == 1) return upper;
   return 0.5 *
          (upper + *std::max_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(middle)));
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
 }
 
 std::vector<PairMeasurement> runPairs(const std::vector<PairProblem>& problems,
@@ -74,6 +85,7 @@ std::vector<PairMeasurement> runPairs(const std::vector<PairProblem>& problems,
       if (problem.true_fixed_from_moving)
         own[m].error = difference(own[m].fixed_from_moving.value_or(problem.start_fixed_from_moving),
                                   *problem.true_fixed_from_moving);
+      if (problem.floor) own[m].times_floor = own[m].error.translation_m / problem.floor->translation_m;
       all.push_back(own[m]);
     }
   }

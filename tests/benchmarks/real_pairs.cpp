@@ -189,6 +189,7 @@ void addRows(Table& table, const RealSet& set, const std::vector<PairMethod>& me
     }
     row.median_mm = median(metres) * 1e3;
     row.median_deg = median(radians) / kDegree;
+    row.most_mm = quantile(metres, 0.95) * 1e3;
     row.worst_mm = *std::max_element(metres.begin(), metres.end()) * 1e3;
     row.worst_deg = *std::max_element(radians.begin(), radians.end()) / kDegree;
     row.within = std::to_string(good) + "/" + std::to_string(metres.size()) + " (" +

@@ -9,10 +9,11 @@ namespace tiltmap::benchmarks {
 
 namespace {
 
-using Cells = std::array<std::string, 10>;
+using Cells = std::array<std::string, 12>;
 
-constexpr std::array<const char*, 10> kColumns = {"program", "time ms",  "CPU ms", "x ours", "median mm",
-                                                  "deg",     "worst mm", "deg",    "within", "remark"};
+constexpr std::array<const char*, 12> kColumns = {"program",   "time ms", "CPU ms",  "x ours",
+                                                  "median mm", "deg",     "x floor", "95 % mm",
+                                                  "worst mm",  "deg",     "within",  "remark"};
 
 std::string number(const std::optional<double>& value, const char* format) {
   if (!value) return "";
@@ -34,13 +35,15 @@ Cells cellsOf(const Row& row) {
           digits(row.times_ours),
           digits(row.median_mm),
           number(row.median_deg, "%.4f"),
+          digits(row.times_floor),
+          digits(row.most_mm),
           digits(row.worst_mm),
           number(row.worst_deg, "%.3f"),
           row.within,
           row.remark};
 }
 
-void printCells(std::ostream& out, const Cells& cells, const std::array<std::size_t, 10>& widths) {
+void printCells(std::ostream& out, const Cells& cells, const std::array<std::size_t, 12>& widths) {
   std::string line;
   for (std::size_t c = 0; c < cells.size(); ++c) {
     const std::string padding(widths[c] - cells[c].size(), ' ');
@@ -65,7 +68,7 @@ void Table::setRatios(const std::string& subject, const std::string& ours) {
 
 void Table::print(std::ostream& out) const {
   for (const std::string& line : heading) out << line << '\n';
-  std::array<std::size_t, 10> widths{};
+  std::array<std::size_t, 12> widths{};
   Cells names;
   for (std::size_t c = 0; c < names.size(); ++c) {
     names[c] = kColumns[c];
@@ -99,6 +102,8 @@ nlohmann::json Table::json() const {
     add("times_ours", row.times_ours);
     add("median_mm", row.median_mm);
     add("median_deg", row.median_deg);
+    add("times_floor", row.times_floor);
+    add("most_mm", row.most_mm);
     add("worst_mm", row.worst_mm);
     add("worst_deg", row.worst_deg);
     if (!row.within.empty()) entry["within"] = row.within;

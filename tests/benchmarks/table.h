@@ -17,7 +17,10 @@ struct Row {
   std::optional<double> wall_ms{};
   std::optional<double> cpu_ms{};      // of all threads together
   std::optional<double> times_ours{};  // its CPU time over that of our row of the subject; above 1: slower
-  std::optional<double> median_mm{}, median_deg{}, worst_mm{}, worst_deg{};
+  std::optional<double> median_mm{}, median_deg{};
+  std::optional<double> times_floor{};  // median over the pairs of the error over that pair's noise floor
+  std::optional<double> most_mm{};      // 95 % are below
+  std::optional<double> worst_mm{}, worst_deg{};
   std::string within{};  // "12/13"
   std::string remark{};
 };

@@ -3,12 +3,15 @@
 #include <cmath>
 #include <set>
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include "core/base/random.h"
 #include "core/registration/block_patches.h"
 #include "core/registration/cube_patches.h"
 #include "core/registration/grid_moments.h"
 #include "core/registration/patch_raster.h"
+#include "core/registration/plane_patch.h"
 #include "core/registration/prepared_scan.h"
 #include "tests/support/range_images.h"
 #include "tests/support/room_scene.h"
@@ -59,6 +62,44 @@ void expectOnTheRoom(const SurfaceElements& patches, std::size_t valid_cells) {
   EXPECT_GT(static_cast<double>(on_surface), 0.85 * static_cast<double>(patches.size()));
   EXPECT_LE(cells, valid_cells);
   EXPECT_GT(static_cast<double>(cells), 0.8 * static_cast<double>(valid_cells));
+}
+
+// Against Eigen's solver, from walls to needles, far from and near to double eigenvalues.
+TEST(PlaneAxes, AreThoseOfTheCovariance) {
+  RandomStream random(3);
+  for (int i = 0; i < 2000; ++i) {
+    const V roots(std::pow(10.0, random.uniform(-7.0, -3.0)), std::pow(10.0, random.uniform(-4.0, -1.0)),
+                  std::pow(10.0, random.uniform(-3.0, 0.0)));
+    const Eigen::Matrix3d turn =
+        rotationExp(3.0 * V(random.normal(), random.normal(), random.normal())).toRotationMatrix();
+    Eigen::Matrix3d covariance = turn * roots.asDiagonal() * turn.transpose();
+    covariance = (0.5 * (covariance + covariance.transpose())).eval();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+    const V expected = solver.eigenvalues();
+    const PlaneAxes found = planeAxes(covariance);
+    const double tolerance = expected[1] < 1.2 * expected[0] ? 0.01 : 1e-6;
+    EXPECT_NEAR(found.values[0], expected[0], tolerance * expected[0] + 1e-12);
+    EXPECT_NEAR(found.values[1], expected[1], tolerance * expected[1] + 1e-12);
+    EXPECT_NEAR(found.values[2], expected[2], 1e-9 * expected[2]);
+    EXPECT_LT((found.axes.transpose() * found.axes - Eigen::Matrix3d::Identity()).norm(), 1e-9);
+    if (expected[1] > 2.0 * expected[0])
+      EXPECT_GT(std::abs(found.axes.col(0).dot(solver.eigenvectors().col(0))), 1.0 - 1e-6);
+    if (expected[2] > 2.0 * expected[1])
+      EXPECT_GT(std::abs(found.axes.col(2).dot(solver.eigenvectors().col(2))), 1.0 - 1e-6);
+    EXPECT_LE(leastResidual(covariance), expected[0] * (1.0 + 1e-6) + 1e-15);
+    EXPECT_GE(3.001 * leastResidual(covariance) + 1e-12, expected[0]);
+  }
+}
+
+// A point, a line, a plane without noise, a ball: numbers, and axes that are axes.
+TEST(PlaneAxes, OfWhatIsNoPlane) {
+  for (const V& roots : {V(0, 0, 0), V(0, 0, 1), V(0, 1, 1), V(1, 1, 1), V(0, 1e-9, 1), V(1e-9, 1e-9, 1)}) {
+    const Eigen::Matrix3d turn = rotationExp(V(0.3, -0.5, 0.7)).toRotationMatrix();
+    const PlaneAxes found = planeAxes(turn * roots.asDiagonal() * turn.transpose());
+    EXPECT_TRUE(found.values.allFinite());
+    EXPECT_LT((found.values - roots).norm(), 1e-3 * (roots.norm() + 1e-6));
+    EXPECT_LT((found.axes.transpose() * found.axes - Eigen::Matrix3d::Identity()).norm(), 1e-9);
+  }
 }
 
 TEST(Patches, FarGroundIsSetBackByTheSpotOrLeftOut) {
