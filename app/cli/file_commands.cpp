@@ -1,7 +1,10 @@
 // tiltmap copy|merge|compact|verify P.tiltmap ...: projects as files.
+#include <algorithm>
+
 #include "app/cli/operation_runner.h"
 #include "core/base/text.h"
 #include "core/project/operations/merge_operation.h"
+#include "core/project/operations/registration_shards.h"
 
 namespace tiltmap::cli {
 
@@ -10,7 +13,8 @@ namespace {
 struct FileWords {
   std::string project;
   std::string other;
-  std::vector<double> at;  // x, y in metres, heading in degrees
+  std::vector<std::string> others;  // of merge: a project, or the parts of a registration
+  std::vector<double> at;           // x, y in metres, heading in degrees
 };
 
 int copy(Context& context, const FileWords& words) {
@@ -47,14 +51,39 @@ int verify(Context& context, const FileWords& words) {
   return kDone;
 }
 
+int mergeParts(Context& context, const FileWords& words) {
+  if (!words.at.empty())
+    return context.console.wrongUsage({"the parts of a registration have no place of their own", "--at",
+                                       "leave --at out; it is for merging a project"});
+  std::vector<std::string> warnings;
+  return editCommand(
+      context, words.project,
+      [&](const SnapshotPtr& into) {
+        return mergeRegistrationParts(into, {words.others.begin(), words.others.end()})
+            .map([&](OperationResult result) {
+              warnings = std::move(result.warnings);
+              return std::move(result.edit);
+            });
+      },
+      &warnings);
+}
+
 int merge(Context& context, const FileWords& words) {
+  if (std::ranges::any_of(words.others, isRegistrationPart)) return mergeParts(context, words);
+  if (words.others.size() > 1)
+    return context.console.failed(
+        {"only one project is merged at a time, and none of these is a part of a "
+         "registration",
+         words.others.front(),
+         "merge the projects one after the other, or name the parts that `tiltmap "
+         "register --shard` wrote"});
   std::optional<Pose> placement;
   if (words.at.size() == 3) placement = Pose::planar(words.at[0], words.at[1], words.at[2] * kDegree);
   std::vector<std::string> warnings;
   return editCommand(
       context, words.project,
       [&](const SnapshotPtr& into) {
-        return mergeProjects(into, words.other, placement).map([&](OperationResult result) {
+        return mergeProjects(into, words.others.front(), placement).map([&](OperationResult result) {
           warnings = std::move(result.warnings);
           return std::move(result.edit);
         });
@@ -77,8 +106,11 @@ void addFiles(CLI::App& app, Chosen& chosen) {
   add("copy", "Save as: the whole project, history included, as a new file", copy)
       ->add_option("new", words->other, "The file to make; nothing must be there yet")
       ->required();
-  auto* merging = add("merge", "Append everything of another project, which stays as it is", merge);
-  merging->add_option("other", words->other, "The project to take from")->required();
+  auto* merging = add("merge",
+                      "Append everything of another project, which stays as it is; or put the parts of a "
+                      "registration (register --shard) together",
+                      merge);
+  merging->add_option("other", words->others, "The project to take from, or all the parts")->required();
   merging
       ->add_option(
           "--at", words->at,

@@ -1,6 +1,7 @@
 #include "ui/models/localisation_model.h"
 
 #include <QFont>
+#include <algorithm>
 
 #include "core/base/text.h"
 #include "ui/models/strings.h"
@@ -22,6 +23,7 @@ void LocalisationModel::readAgain() {
   table_ = {};
   filled_.clear();
   evaluation_.reset();
+  overruled_.clear();
   if (snapshot_ && !snapshot_->scans().empty()) {
     stage_ = workspace_.display().stage();
     const std::vector<Pose> poses = snapshot_->filledPoses(stage_);
@@ -30,15 +32,28 @@ void LocalisationModel::readAgain() {
     if (stage_ != Stage::Truth && snapshot_->hasStage(Stage::Truth))
       if (auto evaluation = evaluateTrajectory(poses, snapshot_->filledPoses(Stage::Truth)))
         evaluation_ = std::move(*evaluation);
+    const Stage latest = snapshot_->latestStage();
+    if (latest == Stage::Pairwise || latest == Stage::Relaxed) overruled_ = overruledRows(*snapshot_, latest);
   }
   endResetModel();
 }
 
 QString LocalisationModel::summary() const {
-  if (!evaluation_) return {};
-  return QString("RMSE %1, %2° against the truth")
-      .arg(smallLengthText(evaluation_->rmse_translation_m, workspace_.preferences().lengthUnit()),
-           qt(fixedReal(evaluation_->rmse_rotation_deg, 3)));
+  QString text;
+  if (evaluation_)
+    text = QString("RMSE %1, %2° against the truth")
+               .arg(smallLengthText(evaluation_->rmse_translation_m, workspace_.preferences().lengthUnit()),
+                    qt(fixedReal(evaluation_->rmse_rotation_deg, 3)));
+  if (overruled_.empty()) return text;
+  QStringList stops;
+  for (const OverruledRow& row : overruled_) stops << QString::number(row.scan);
+  return text + (text.isEmpty() ? "" : "; ") +
+         QString("odometry overruled at stop%1 %2").arg(stops.size() > 1 ? "s" : "", stops.join(", "));
+}
+
+const OverruledRow* LocalisationModel::overruled(std::size_t stop) const {
+  const auto row = std::ranges::find(overruled_, stop, &OverruledRow::scan);
+  return row == overruled_.end() ? nullptr : &*row;
 }
 
 QString LocalisationModel::asText() const {
@@ -59,7 +74,7 @@ int LocalisationModel::columnCount(const QModelIndex& parent) const {
 
 QString LocalisationModel::number(const LocalisationRow& row, int column) const {
   const LengthUnit unit = workspace_.preferences().lengthUnit();
-  if (column == Stop) return QString::number(row.stop);
+  if (column == Stop) return QString::number(row.stop) + (overruled(row.stop) ? " !" : "");
   if (column <= Z) return lengthNumber(row.position_m[column - X], unit);
   if (column <= HeadingZ) return qt(fixedReal(row.heading[column - HeadingX], 4));
   const StopError& error = evaluation_->stops[row.stop];
@@ -82,12 +97,13 @@ QVariant LocalisationModel::data(const QModelIndex& index, int role) const {
       font.setItalic(filled_[row]);
       return font;
     }
-    case Qt::ToolTipRole:
-      return QString("Stop %1: %2%3")
-          .arg(row)
-          .arg(qt(snapshot_->scans()[row].name),
-               filled_[row] ? "\nNo pose of this stage: placed by odometry from the nearest stop that has one"
-                            : "");
+    case Qt::ToolTipRole: {
+      QString text = QString("Stop %1: %2").arg(row).arg(qt(snapshot_->scans()[row].name));
+      if (filled_[row])
+        text += "\nNo pose of this stage: placed by odometry from the nearest stop that has one";
+      if (const OverruledRow* wrong = overruled(row)) text += "\nBut " + qt(wrong->sentence());
+      return text;
+    }
     default:
       return {};
   }

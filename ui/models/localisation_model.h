@@ -6,6 +6,7 @@
 
 #include "core/products/evaluation.h"
 #include "core/products/localisation_table.h"
+#include "core/project/odometry_check.h"
 #include "core/project/project_snapshot.h"
 
 namespace tiltmap::ui {
@@ -25,7 +26,9 @@ class LocalisationModel : public QAbstractTableModel {
   const LocalisationTable& table() const { return table_; }
   Stage stage() const { return stage_; }
   const std::optional<TrajectoryEvaluation>& evaluation() const { return evaluation_; }
-  QString summary() const;  // "RMSE 12.3 mm, 0.041 deg against the truth"; empty where it is not known
+  // "RMSE 12.3 mm, 0.041 deg against the truth" where that is known, and the stops whose odometry the scans
+  // contradict.
+  QString summary() const;
   // The table as text for a letter or a spreadsheet (metres); all rows.
   QString asText() const;
   QString asCsv() const;
@@ -40,6 +43,7 @@ class LocalisationModel : public QAbstractTableModel {
  private:
   void readAgain();
   QString number(const LocalisationRow& row, int column) const;
+  const OverruledRow* overruled(std::size_t stop) const;  // null where its odometry holds
 
   Workspace& workspace_;
   SnapshotPtr snapshot_;
@@ -47,6 +51,7 @@ class LocalisationModel : public QAbstractTableModel {
   LocalisationTable table_;
   std::vector<bool> filled_;  // the pose is carried on by odometry, not of the stage
   std::optional<TrajectoryEvaluation> evaluation_;
+  std::vector<OverruledRow> overruled_;  // at the latest stage, whichever is shown
 };
 
 }  // namespace tiltmap::ui

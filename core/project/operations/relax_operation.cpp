@@ -12,6 +12,7 @@
 #include "core/multiview/relaxation.h"
 #include "core/project/link_what_if.h"
 #include "core/project/operations/index_list.h"
+#include "core/project/operations/link_consistency.h"
 #include "core/project/operations/register_operation.h"
 
 namespace tiltmap {
@@ -341,9 +342,12 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
     outcome.warnings = start->warnings;
     RelaxationInput input;
     input.scans = std::move(*prepared);
-    input.world_from_scan = start->world_from_scan;
+    auto consistent = consistentLinks(*snapshot, start->links, start->world_from_scan, *pins);
+    if (!consistent) return fail(consistent.error());
+    outcome.warnings.insert(outcome.warnings.end(), consistent->warnings.begin(), consistent->warnings.end());
+    input.world_from_scan = std::move(consistent->world_from_scan);
     input.pins = *pins;
-    addLinks(*snapshot, start->links, input);
+    addLinks(*snapshot, consistent->links, input);
     if (feed_) feed_->began(beginningOf(*snapshot, input, settings));
 
     auto result = relax(std::move(input), settings.relaxation, settings.threads,

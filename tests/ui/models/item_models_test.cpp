@@ -131,4 +131,21 @@ TEST_F(ItemModelsTest, LocalisationShowsErrorsWhereTheTruthIsKnown) {
   EXPECT_EQ(table.summary(), "RMSE 30.0 mm, 0.000° against the truth");
 }
 
+TEST_F(ItemModelsTest, LocalisationNamesTheStopsWhoseOdometryTheScansContradict) {
+  makeProject(3);
+  LocalisationModel table(workspace);
+  std::vector<std::pair<ScanId, Pose>> poses;
+  for (const ScanEntry& scan : snapshot().scans()) poses.emplace_back(scan.id, scan.odometry());
+  must(workspace.session().apply(posesEdit(Stage::Pairwise, poses)));
+  EXPECT_EQ(table.summary(), "");
+  poses[1].second = poses[1].second * Pose::planar(1.4, 0.0, 0.0);
+  must(workspace.session().apply(posesEdit(Stage::Pairwise, poses)));
+  EXPECT_EQ(table.summary(), "odometry overruled at stop 1");
+  EXPECT_EQ(cell(table, 1, LocalisationModel::Stop), "1 !");
+  EXPECT_EQ(cell(table, 2, LocalisationModel::Stop), "2");
+  EXPECT_TRUE(
+      table.data(table.index(1, 0), Qt::ToolTipRole).toString().contains("odometry of scan 1 was overruled"));
+  EXPECT_FALSE(table.data(table.index(2, 0), Qt::ToolTipRole).toString().contains("overruled"));
+}
+
 }  // namespace tiltmap::test
