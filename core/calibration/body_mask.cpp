@@ -6,11 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/ranks.h"
+#include "core/io/file_bytes.h"
 
 namespace tiltmap {
 
 namespace {
 
+constexpr const char* kFormat = "tiltmap body mask 1";
 constexpr double kClear_m = 0.05;    // of the body, in the minimum range
 constexpr double kFewNearer = 1e-3;  // of all cells with a point may be lost to it
 
@@ -20,7 +22,7 @@ double bodyRange(const std::vector<RangeImagePtr>& images, std::size_t cell, con
   near.clear();
   std::size_t taken = 0;
   for (const RangeImagePtr& image : images) {
-    if (image->code(cell) == cell_code::kNotScanned) continue;
+    if (image->code(cell) == cell_code::kNotScanned || image->code(cell) == cell_code::kMasked) continue;
     ++taken;
     const double range = static_cast<double>(image->range(cell));
     if (image->hasPoint(cell) && range < settings.within_m) near.push_back(range);
@@ -102,6 +104,9 @@ Result<BodyMask> learnBodyMask(const std::vector<RangeImagePtr>& images, const B
     mask.furthest_m = std::max(mask.furthest_m, range);
   }
   mask.masked = widened(mask.masked, mask.rows, mask.columns, settings.margin_cells);
+  for (const RangeImagePtr& image : images)
+    for (std::size_t cell = 0; cell < image->cells(); ++cell)
+      if (image->code(cell) == cell_code::kMasked) mask.masked[cell] = 1;
   if (mask.cells == 0) return mask;
   std::size_t points = 0;
   const double minimum = mask.furthest_m + kClear_m;
@@ -110,24 +115,47 @@ Result<BodyMask> learnBodyMask(const std::vector<RangeImagePtr>& images, const B
   return mask;
 }
 
+CellMask cellsOf(const BodyMask& mask) {
+  return cellMask(mask.rows, mask.columns, mask.masked);
+}
+
 std::string bodyMaskText(const BodyMask& mask) {
   nlohmann::json runs = nlohmann::json::array();
-  for (int row = 0; row < mask.rows; ++row)
-    for (int column = 0; column < mask.columns; ++column) {
-      const auto at = [&](int c) {
-        return mask.masked[static_cast<std::size_t>(row * mask.columns + c)] != 0;
-      };
-      if (!at(column)) continue;
-      const int first = column;
-      while (column + 1 < mask.columns && at(column + 1)) ++column;
-      runs.push_back({row, first, column});
-    }
-  return nlohmann::json{{"format", "tiltmap body mask 1"}, {"rows", mask.rows},
-                        {"columns", mask.columns},         {"cells", mask.cells},
-                        {"furthest_m", mask.furthest_m},   {"minimum_range_m", mask.minimum_range_m},
+  for (const CellRun& run : cellsOf(mask).runs) runs.push_back({run.row, run.first, run.last});
+  return nlohmann::json{{"format", kFormat},
+                        {"rows", mask.rows},
+                        {"columns", mask.columns},
+                        {"cells", mask.cells},
+                        {"furthest_m", mask.furthest_m},
+                        {"minimum_range_m", mask.minimum_range_m},
                         {"runs_row_first_last", runs}}
              .dump() +
          "\n";
+}
+
+Result<StoredBodyMask> readBodyMask(const std::filesystem::path& path) {
+  const auto bytes = fileBytes(path);
+  if (!bytes) return fail(bytes.error());
+  const auto refuse = [&](const std::string& what) {
+    return fail(what, path.string(), "name a file that `tiltmap body-mask --out` has written");
+  };
+  const auto json = nlohmann::json::parse(*bytes, nullptr, false);
+  if (!json.is_object() || json.value("format", nlohmann::json()) != kFormat)
+    return refuse("the file holds no body mask");
+  StoredBodyMask stored;
+  try {
+    stored.cells.rows = json.at("rows").get<int>();
+    stored.cells.columns = json.at("columns").get<int>();
+    stored.minimum_range_m = json.at("minimum_range_m").get<double>();
+    for (const auto& run : json.at("runs_row_first_last"))
+      stored.cells.runs.push_back({run.at(0).get<int>(), run.at(1).get<int>(), run.at(2).get<int>()});
+  } catch (const nlohmann::json::exception&) {
+    return refuse("the body mask in the file is not complete");
+  }
+  if (const Status status = checkCellMask(stored.cells); !status) return refuse(status.error().what);
+  if (!(stored.minimum_range_m >= 0.0) || stored.minimum_range_m > 100.0)
+    return refuse("the minimum range in the file is impossible");
+  return stored;
 }
 
 }  // namespace tiltmap

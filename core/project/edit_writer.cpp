@@ -17,6 +17,8 @@ namespace {
 constexpr const char* kLookAgain =
     "the project may have changed since; look at `tiltmap info` and repeat the command";
 
+constexpr const char* kGeometryOf = "SELECT geometry_id FROM scan WHERE id = ?";
+
 [[noreturn]] void refuse(std::string what, std::string where, std::string remedy) {
   throw StoreFailure(std::move(what), std::move(where), std::move(remedy));
 }
@@ -121,7 +123,31 @@ void EditWriter::apply(const SetGeometry& step) {
     refuse("the geometry has another size than the scan's matrix", scanText(scan),
            "give one with " + std::to_string(old.number(0)) + " rows and " + std::to_string(old.number(1)) +
                " columns");
-  database_.run("UPDATE scan SET geometry_id = ? WHERE id = ?", geometryRow(database_, step.geometry), scan);
+  const auto mask = storedBodyMask(database_, database_.integer(kGeometryOf, scan).value_or(0));
+  database_.run("UPDATE scan SET geometry_id = ? WHERE id = ?", geometryRow(database_, step.geometry, mask),
+                scan);
+}
+
+void EditWriter::apply(const SetBodyMask& step) {
+  const ScanId scan = resolved(step.scan);
+  std::optional<std::string> text;
+  if (step.mask) {
+    if (Status status = checkCellMask(*step.mask); !status) throw StoreFailure(status.error());
+    text = cellMaskText(*step.mask);
+  }
+  Statement now =
+      database_.prepare(std::string("SELECT matrix.rows, matrix.columns, geometry_id FROM scan ") +
+                        "JOIN matrix ON matrix.id = matrix_id WHERE scan.id = ?");
+  now.bind(scan).step();
+  if (step.mask && (now.number(0) != step.mask->rows || now.number(1) != step.mask->columns))
+    refuse("the mask has another size than the scan's matrix", scanText(scan),
+           "learn one from scans of " + std::to_string(now.number(0)) + " rows and " +
+               std::to_string(now.number(1)) + " columns");
+  Statement geometry =
+      database_.prepare(std::string("SELECT ") + kGeometryColumns + " FROM scanner_geometry WHERE id = ?");
+  geometry.bind(now.integer(2)).step();
+  database_.run("UPDATE scan SET geometry_id = ? WHERE id = ?",
+                geometryRow(database_, geometryFrom(geometry, 0), text), scan);
 }
 
 void EditWriter::addPhotograph(ScanId scan, const NewPhotograph& photograph) {

@@ -24,6 +24,7 @@ class EditWriter {
   void apply(const SetColour& step);
   void apply(const ReorderScans& step);
   void apply(const SetGeometry& step);
+  void apply(const SetBodyMask& step);
   void apply(const AddPhotograph& step);
   void apply(const RemovePhotograph& step);
   void apply(const AddLinks& step);

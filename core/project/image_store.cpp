@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "core/project/snapshot_reader.h"
 #include "core/scan/beam_tilts.h"
 
 namespace tiltmap {
@@ -59,22 +60,45 @@ ImageStore::ImageStore(const std::filesystem::path& path, std::size_t kept_bytes
 
 Result<RangeImagePtr> ImageStore::image(std::int64_t matrix, int lines, std::int64_t geometry_id,
                                         const ScannerGeometry& geometry) {
-  const MatrixKey key{matrix, lines, lines < geometry.rows || hasBounds(geometry) ? geometry_id : 0};
   const std::lock_guard lock(mutex_);
+  const auto mask = attempt([&] { return maskOf(geometry_id); });
+  if (!mask) return fail(mask.error());
+  const MatrixKey key{matrix, lines, lines < geometry.rows || hasBounds(geometry) || *mask ? geometry_id : 0};
   if (const auto found = known_.find(key); found != known_.end()) {
     if (RangeImagePtr image = found->second.lock()) {
       keep(key, image);
       return image;
     }
   }
-  auto loaded = attempt([&] { return load(matrix, lines, geometry); });
+  auto loaded = attempt([&] { return load(matrix, lines, geometry, *mask); });
   if (loaded) keep(key, *loaded);
   return loaded;
 }
 
-Result<RangeImagePtr> ImageStore::readImage(std::int64_t matrix, int lines, const ScannerGeometry& geometry) {
+Result<RangeImagePtr> ImageStore::readImage(std::int64_t matrix, int lines, std::int64_t geometry_id,
+                                            const ScannerGeometry& geometry) {
   const std::lock_guard lock(mutex_);
-  return attempt([&] { return load(matrix, lines, geometry); });
+  masks_.erase(geometry_id);
+  return attempt([&] { return load(matrix, lines, geometry, maskOf(geometry_id)); });
+}
+
+void ImageStore::forget() {
+  const std::lock_guard lock(mutex_);
+  kept_.clear();
+  bytes_ = 0;
+  known_.clear();
+  masks_.clear();
+}
+
+ImageStore::CellMaskPtr ImageStore::maskOf(std::int64_t geometry_id) {
+  if (const auto known = masks_.find(geometry_id); known != masks_.end()) return known->second;
+  connection_.requireUnchanged();
+  const Database& database = connection_.database();
+  CellMaskPtr mask;
+  if (const auto text = storedBodyMask(database, geometry_id))
+    mask = std::make_shared<const CellMask>(orThrow(parseCellMask(*text, database.path().string())));
+  masks_.emplace(geometry_id, mask);
+  return mask;
 }
 
 Result<std::vector<unsigned char>> ImageStore::photograph(std::int64_t photograph) {
@@ -122,7 +146,8 @@ void ImageStore::keep(const MatrixKey& key, const RangeImagePtr& image) {
   }
 }
 
-RangeImagePtr ImageStore::load(std::int64_t matrix, int lines, const ScannerGeometry& geometry) const {
+RangeImagePtr ImageStore::load(std::int64_t matrix, int lines, const ScannerGeometry& geometry,
+                               const CellMaskPtr& mask) const {
   const Database& database = connection_.database();
   connection_.requireUnchanged();
   const Transaction transaction(database, Transaction::Kind::Read);
@@ -177,6 +202,8 @@ RangeImagePtr ImageStore::load(std::int64_t matrix, int lines, const ScannerGeom
     throw damaged(database, matrix, std::to_string(lines - found) + " of its lines are missing");
   setTurnTilts(data, turn_tilts);
   applyBounds(geometry, data);
+  if (mask && !maskCells(*mask, data))
+    throw damaged(database, matrix, "the mask of the machine's body has another size");
   auto image = RangeImage::make(std::move(data));
   if (!image) throw damaged(database, matrix, image.error().what);
   return *image;

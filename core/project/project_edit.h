@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/project/project_snapshot.h"
+#include "core/scan/cell_mask.h"
 
 namespace tiltmap {
 
@@ -61,6 +62,12 @@ struct SetGeometry {  // a new calibration; rows and columns must stay
   ScanId scan = 0;
   ScannerGeometry geometry;
 };
+// Its cells are handed out as cell_code::kMasked from then on; the stored ranges stay. Later geometries of
+// the scan keep it.
+struct SetBodyMask {
+  ScanId scan = 0;
+  std::optional<CellMask> mask;  // of the matrix's size; nothing: none any more
+};
 struct AddPhotograph {
   ScanId scan = 0;
   NewPhotograph photograph;
@@ -102,8 +109,9 @@ struct SetSitePicture {
 };
 
 using EditStep = std::variant<AddScan, DeleteScans, RenameScan, SetNote, SetColour, ReorderScans, SetGeometry,
-                              AddPhotograph, RemovePhotograph, AddLinks, DeleteLinks, SetLinkState,
-                              SetLinkJudgements, SetPoses, ClearPoses, SetSurvey, SetPins, SetSitePicture>;
+                              SetBodyMask, AddPhotograph, RemovePhotograph, AddLinks, DeleteLinks,
+                              SetLinkState, SetLinkJudgements, SetPoses, ClearPoses, SetSurvey, SetPins,
+                              SetSitePicture>;
 
 // One entry of the history: undone and redone as a whole.
 struct ProjectEdit {

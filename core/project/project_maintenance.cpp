@@ -177,6 +177,7 @@ Result<CompactReport> Project::compact() {
       database.execute("UPDATE project SET revision = revision + 1");
       SnapshotPtr after = SnapshotReader::read(database, state_->images);
       transaction.commit();
+      state_->images->forget();
       state_->publish(std::move(after));
     }
     // Safe to be killed in: it goes through the log like any other change.
@@ -201,7 +202,7 @@ Status Project::verify() const {
     if (keys.step())
       throw damaged("a row of table " + keys.text(0) + " refers to one that is missing in " + keys.text(2));
     for (const ScanEntry& scan : state_->current()->scans())
-      orThrow(state_->images->readImage(scan.matrix, scan.lines, scan.geometry));
+      orThrow(state_->images->readImage(scan.matrix, scan.lines, scan.geometry_id, scan.geometry));
   });
 }
 

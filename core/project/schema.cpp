@@ -153,7 +153,11 @@ constexpr Migration kTurnTilt = "ALTER TABLE scan_line ADD COLUMN turn_tilt_rad 
 // What judging a link by its scans gave, and of what; NULL: it was not judged.
 constexpr Migration kLinkJudgement = "ALTER TABLE link ADD COLUMN judgement TEXT";
 
-constexpr std::array kMigrations = {kVersion1, kScanColour, kTurnTilt, kLinkJudgement};
+// Cells of the matrix that show the machine itself, as core/scan/cell_mask.h writes them; NULL: none. Part of
+// what makes a geometry: scans that differ in it have different rows.
+constexpr Migration kBodyMask = "ALTER TABLE scanner_geometry ADD COLUMN body_mask TEXT";
+
+constexpr std::array kMigrations = {kVersion1, kScanColour, kTurnTilt, kLinkJudgement, kBodyMask};
 constexpr std::array kRecorded = {"scan", "pose", "photograph", "link", "survey", "job"};
 
 }  // namespace

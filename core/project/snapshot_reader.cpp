@@ -209,24 +209,32 @@ ScannerGeometry geometryFrom(const Statement& row, int first) {
   return g;
 }
 
-std::int64_t geometryRow(const Database& database, const ScannerGeometry& g) {
+std::optional<std::string> storedBodyMask(const Database& database, std::int64_t geometry_id) {
+  Statement query = database.prepare("SELECT body_mask FROM scanner_geometry WHERE id = ?");
+  if (!query.bind(geometry_id).step() || query.isNull(0)) return std::nullopt;
+  return query.text(0);
+}
+
+std::int64_t geometryRow(const Database& database, const ScannerGeometry& g,
+                         const std::optional<std::string>& body_mask) {
   const auto withValues = [&](auto&& use) {
     return use(g.rows, g.columns, g.azimuth_start_rad, g.azimuth_step_rad, g.tilt_start_rad, g.tilt_step_rad,
                g.tilt_zero_rad, g.lever_arm_m.x(), g.lever_arm_m.y(), g.lever_arm_m.z(), g.mounting.x(),
                g.mounting.y(), g.mounting.z(), g.mounting.w(), g.range_offset_m, g.minimum_range_m,
-               g.maximum_range_m);
+               g.maximum_range_m, body_mask);
   };
   const std::string columns = kGeometryColumns;
   // One row for each distinct geometry: a survey has one or two.
   const auto known = withValues([&](const auto&... values) {
     return database.integer("SELECT id FROM scanner_geometry WHERE (" + columns +
-                                ") = (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ORDER BY id LIMIT 1",
+                                ") = (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) AND body_mask IS ? "
+                                "ORDER BY id LIMIT 1",
                             values...);
   });
   if (known) return *known;
   withValues([&](const auto&... values) {
     database.run("INSERT INTO scanner_geometry(" + columns +
-                     ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                     ", body_mask) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
                  values...);
     return 0;
   });

@@ -23,7 +23,11 @@ class SnapshotReader {
 // One row of scanner_geometry from the given column on, and the row that holds these values (made if need
 // be).
 ScannerGeometry geometryFrom(const Statement& row, int first_column);
-std::int64_t geometryRow(const Database& database, const ScannerGeometry& geometry);
+// With a mask of cells as core/scan/cell_mask.h writes it; nothing: none.
+std::int64_t geometryRow(const Database& database, const ScannerGeometry& geometry,
+                         const std::optional<std::string>& body_mask = std::nullopt);
+// The mask that belongs to a row of scanner_geometry.
+std::optional<std::string> storedBodyMask(const Database& database, std::int64_t geometry_id);
 inline constexpr const char* kGeometryColumns =
     "rows, columns, azimuth_start_rad, azimuth_step_rad, tilt_start_rad, tilt_step_rad, tilt_zero_rad, "
     "lever_arm_x_m, lever_arm_y_m, lever_arm_z_m, mounting_qx, mounting_qy, mounting_qz, mounting_qw, "

@@ -39,7 +39,7 @@ class CaptureOperation : public SettingsOperation<CaptureSettings> {
   Status checkSettings(const ProjectSnapshot& snapshot, const CaptureSettings& settings) const override {
     const auto plan = planCapture(snapshot, settings);
     if (!plan) return fail(plan.error());
-    if (const Status status = checkCapture(plan->settings, ask_); !status) return status;
+    if (const Status status = checkCapture(snapshot, plan->settings, ask_); !status) return status;
     const ScannerGeometry geometry{.rows = plan->settings.lines,
                                    .tilt_start_rad = plan->settings.start_rad,
                                    .tilt_step_rad = plan->settings.step_rad};

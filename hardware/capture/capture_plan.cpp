@@ -5,6 +5,7 @@
 #include "core/base/text.h"
 #include "hardware/capture/capture_operation.h"
 #include "hardware/capture/instruments.h"
+#include "hardware/capture/stop_odometry.h"
 
 namespace tiltmap {
 
@@ -67,6 +68,14 @@ const ParameterTable<CaptureSettings>& captureTable() {
     t.text("odometry", &S::odometry,
            "X,Y,HEADING of the stop in the frame of the last one: metres right and forward, degrees left",
            "thesis 5.1");
+    t.text("odometry-from", &S::odometry_from,
+           "Where the stops' poses come from, in place of steps: a TUM file with one pose for each stop of "
+           "the project, or tcp://HOST:PORT, who sends lines `stamp x y z qx qy qz qw`",
+           "ours");
+    t.choice("odometry-axes", &S::odometry_axes,
+             {{"ros", BodyAxes::ForwardLeftUp}, {"tiltmap", BodyAxes::RightForwardUp}},
+             "Axes of the vehicle in those poses. ros: x forward, y left; tiltmap: x right, y forward",
+             "ours; REP 103");
     t.boolean(
         "resume", &S::resume,
         "Go on with the capture that was interrupted: at its next line, with everything it was begun with",
@@ -168,17 +177,41 @@ Result<CapturePlan> planNextStop(const ProjectSnapshot& snapshot, const CaptureS
   return plan;
 }
 
-Status checkCapture(const CaptureSettings& settings, const AskOperator& ask) {
+namespace {
+
+Status checkOdometryFrom(const ProjectSnapshot& snapshot, const CaptureSettings& settings) {
+  if (settings.odometry_from.empty()) return {};
+  if (!settings.odometry.empty())
+    return fail("the step is given twice", "capture --odometry-from",
+                "leave --odometry or --odometry-from away");
+  if (Status status = checkStopOdometry(settings.odometry_from); !status) return status;
+  if (!isOdometryFeed(settings.odometry_from) || snapshot.scans().empty()) return {};
+  // A feed knows poses in its own frame alone.
+  if (const JobRecord* record = lastCapture(snapshot)) {
+    CaptureSettings then;
+    if (captureTable().apply(record->values, then) && then.odometry_from == settings.odometry_from) return {};
+  }
+  return fail("the last stop was not placed by this feed, so where it is in the feed's frame is not known",
+              settings.odometry_from,
+              "give this step with --odometry X,Y,HEADING, or begin a project with the feed");
+}
+
+}  // namespace
+
+Status checkCapture(const ProjectSnapshot& snapshot, const CaptureSettings& settings,
+                    const AskOperator& ask) {
   if (settings.baud != 9600 && settings.baud != 19200 && settings.baud != 38400 && settings.baud != 500000)
     return fail("the scanner has no rate of " + std::to_string(settings.baud) + " Bd", "capture --baud",
                 "give 9600, 19200, 38400 or 500000");
   if (auto step = parseStep(settings.odometry); !step) return fail(step.error());
   if (settings.emulate != CaptureDrive::None) {
-    if (!settings.scanner.empty() || !settings.tilt.empty() || !settings.odometry.empty())
+    if (!settings.scanner.empty() || !settings.tilt.empty() || !settings.odometry.empty() ||
+        !settings.odometry_from.empty())
       return fail("an emulated drive brings its own instruments and odometry", "capture --emulate",
-                  "leave --scanner, --tilt and --odometry away");
+                  "leave --scanner, --tilt, --odometry and --odometry-from away");
     return {};
   }
+  if (Status status = checkOdometryFrom(snapshot, settings); !status) return status;
   if (settings.scanner.empty() || settings.tilt.empty())
     return fail(
         std::string("no ") + (settings.scanner.empty() ? "scanner" : "tilt unit") + " is named", "capture",

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/base/parameter.h"
+#include "core/geometry/body_axes.h"
 #include "core/project/project_snapshot.h"
 #include "core/world/experiment.h"
 #include "hardware/tilt/manual_unit.h"
@@ -28,6 +29,8 @@ struct CaptureSettings {
   double start_rad = -30.0 * kDegree;
   int stops = 0;
   std::string odometry;
+  std::string odometry_from;  // TUM file or feed, in place of steps (hardware/capture/stop_odometry.h)
+  BodyAxes odometry_axes = BodyAxes::ForwardLeftUp;
   bool resume = false;
   double patience_s = 60.0;
 };
@@ -53,6 +56,6 @@ Result<CapturePlan> planNextStop(const ProjectSnapshot& snapshot, const CaptureS
 // What scans of an emulated drive say they come from.
 std::string emulatedSource(CaptureDrive drive, int seed);
 // Whether the words of it make sense together; `ask` as for makeCaptureOperation(). Opens nothing.
-Status checkCapture(const CaptureSettings& settings, const AskOperator& ask);
+Status checkCapture(const ProjectSnapshot& snapshot, const CaptureSettings& settings, const AskOperator& ask);
 
 }  // namespace tiltmap

@@ -8,6 +8,7 @@
 #include "core/base/text.h"
 #include "core/base/version.h"
 #include "hardware/capture/capture_operation.h"
+#include "hardware/capture/stop_odometry.h"
 
 namespace tiltmap {
 
@@ -29,6 +30,11 @@ class Capture {
   }
 
   Result<OperationResult> run() {
+    if (!plan_.settings.odometry_from.empty() && !experiment_) {
+      auto source = StopOdometry::make(plan_.settings.odometry_from, plan_.settings.odometry_axes);
+      if (!source) return fail(source.error());
+      odometry_source_ = std::move(*source);
+    }
     sweep_.setSettings(sweepSettings(plan_.settings));
     if (Status status = sweep_.prepare(job_); !status) return fail(status.error());
     for (int k = 0; k < plan_.stops; ++k)
@@ -42,8 +48,17 @@ class Capture {
     if (experiment_) return experiment_->poses()[static_cast<std::size_t>(plan_.first_stop + k)].odometry;
     if (k == 0 && task_.last_from_next)
       return last_pose_ ? *last_pose_ * *task_.last_from_next : *task_.last_from_next;
-    std::string step = k == 0 ? plan_.settings.odometry : "";
     const bool between = k > 0 || (plan_.settings.resume && !plan_.unfinished);
+    if (odometry_source_) {
+      if (between)
+        if (auto there =
+                task_.ask("drive to the next stop and press Enter once the vehicle stands", job_.stop);
+            !there)
+          return fail(there.error());
+      return odometry_source_->poseOf(task_.snapshot->scans().size() + static_cast<std::size_t>(added_),
+                                      last_pose_, plan_.settings.patience_s, job_);
+    }
+    std::string step = k == 0 ? plan_.settings.odometry : "";
     std::string trouble;
     while (between) {
       auto answer =
@@ -192,6 +207,7 @@ class Capture {
   LiveProject& live_;
   const JobControl& job_;
   const std::optional<Experiment>& experiment_;
+  std::unique_ptr<StopOdometry> odometry_source_;
   std::optional<Pose> last_pose_;
   int added_ = 0;
   SweepReport total_;

@@ -116,8 +116,10 @@ JobControl CaptureStation::control(const std::stop_token& stop) {
 void CaptureStation::connect(CaptureSettings source) {
   post({[this, source = std::move(source)](const std::stop_token& stop) { connectNow(source, stop); }, {}});
 }
-void CaptureStation::connectToWhatIsThere(std::string tilt_options) {
-  post({[this, options = std::move(tilt_options)](const std::stop_token& stop) { detectNow(options, stop); },
+void CaptureStation::connectToWhatIsThere(std::string tilt_options, std::string network) {
+  post({[this, options = std::move(tilt_options), network = std::move(network)](const std::stop_token& stop) {
+          detectNow(options, network, stop);
+        },
         {}});
 }
 void CaptureStation::reconnect() {
@@ -202,7 +204,7 @@ Status CaptureStation::checkCapture(const ProjectSnapshot& project, const Captur
   }
   const CaptureSettings all = merged(settings);
   if (const auto plan = planNextStop(project, all); !plan) return fail(plan.error());
-  if (Status status = tiltmap::checkCapture(all, {}); !status) return status;
+  if (Status status = tiltmap::checkCapture(project, all, {}); !status) return status;
   const ScannerGeometry geometry{
       .rows = all.lines, .tilt_start_rad = all.start_rad, .tilt_step_rad = all.step_rad};
   return geometry.check();

@@ -101,9 +101,9 @@ class CaptureStation {
   // Named instruments, an emulated drive, or recordings ("lms2xx:replay:FILE"): those are opened by the sweep
   // that replays them, so that it finds every line where it was then.
   void connect(CaptureSettings source);
-  // Goes over the ports and connects to the first scanner and the first tilt unit; options of the tilt unit
-  // ("level=312525") cannot be found and are given.
-  void connectToWhatIsThere(std::string tilt_options);
+  // Goes over the ports, and asks at `network` where an address is given, and connects to the first scanner
+  // and the first tilt unit; options of the tilt unit ("level=312525") cannot be found and are given.
+  void connectToWhatIsThere(std::string tilt_options, std::string network = {});
   void reconnect();  // to the source of before
   void disconnect();
   void jogBy(double angle_rad);
@@ -143,7 +143,7 @@ class CaptureStation {
 
   // On the station's thread (capture_station_work.cpp).
   void connectNow(const CaptureSettings& source, const std::stop_token& stop);
-  void detectNow(const std::string& tilt_options, const std::stop_token& stop);
+  void detectNow(const std::string& tilt_options, const std::string& network, const std::stop_token& stop);
   void prepareNow(const std::stop_token& stop);
   void ready(StationState state = StationState::Ready);
   void putToRest(bool orderly);

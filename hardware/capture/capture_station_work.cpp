@@ -79,10 +79,11 @@ void CaptureStation::connectNow(const CaptureSettings& source, const std::stop_t
   setState(StationState::Ready, "the sweep replays it");
 }
 
-void CaptureStation::detectNow(const std::string& tilt_options, const std::stop_token& stop) {
+void CaptureStation::detectNow(const std::string& tilt_options, const std::string& network,
+                               const std::stop_token& stop) {
   putToRest(true);
   setState(StationState::Connecting, "looking at the ports");
-  const auto found = detectInstruments(settings_.ports, control(stop));
+  const auto found = detectInstruments({settings_.ports, network}, control(stop));
   if (!found) {
     if (found.error().what == kCancelled) return setState(StationState::Idle);
     setState(StationState::Fault);
@@ -170,6 +171,7 @@ Status CaptureStation::lookAtInstruments() {
     line->code = std::move(taken->code);
     update([&](StationSnapshot& state) {
       ++state.lines_seen;
+      state.scanner.facts = sweep_->scanner()->facts();
       if (!state.live) return;
       line->tilt_rad = state.tilt_rad.value_or(0.0);
       state.line = std::move(line);
@@ -270,6 +272,7 @@ SweepEvents CaptureStation::sweepEvents() {
       StationSweep& sweep = now.sweep;
       now.line = line;
       ++now.lines_seen;
+      if (const ScannerUnit* scanner = sweep_->scanner()) now.scanner.facts = scanner->facts();
       rows_.push_back(line);
       now.tilt_rad = taken.tilt_rad;
       ++sweep.rows_taken;

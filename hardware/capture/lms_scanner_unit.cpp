@@ -72,6 +72,7 @@ Status LmsScannerUnit::prepare(const JobControl& job) {
   if (report->configuration.plausible() && report->configuration.measuringMode() == MeasuringMode::Energy)
     return fail("the scanner is set to send energies instead of distances", name_,
                 "set its measuring mode to 0");
+  latest_status_.reset();
   geometry_ = scanner_.geometry();
   const bool indices = report->configuration.plausible() && report->configuration.sendsIndices();
   telegram_size_ = scanWireSize(scanner_.variant().values(), indices);
@@ -158,6 +159,7 @@ Result<std::optional<ScannerEvent>> LmsScannerUnit::whole(const Telegram& telegr
   if (scanner_.report().configuration.plausible())
     line.measuring_mode = scanner_.report().configuration.measuringMode();
   if (Status status = fillCells(line); !status) return fail(status.error());
+  latest_status_ = line.status;
   for (std::string& warning : warningsOf(line.status))
     if (std::ranges::find(warnings_, warning) == warnings_.end()) warnings_.push_back(std::move(warning));
   LineTaken taken{times, std::move(line.range_m), std::move(line.code), std::move(line.intensity)};
@@ -215,15 +217,19 @@ std::vector<InstrumentFact> LmsScannerUnit::facts() const {
   // The window's sensors against the clean reference ones, which the unit itself judges.
   std::string dirt;
   for (const int value : status.pollution) dirt += (dirt.empty() ? "" : " ") + std::to_string(value);
-  const bool dirty = std::ranges::any_of(
+  const bool dirty_then = std::ranges::any_of(
       report.warnings, [](const std::string& text) { return text.find("dirty") != std::string::npos; });
+  // Each line says how the unit is by now.
+  const bool dirty = latest_status_ ? latest_status_->polluted() : dirty_then;
+  constexpr int kError = 3;
+  const bool failing = status.defective || (latest_status_ && latest_status_->severity() >= kError);
   return {{"type", report.type.text},
           {"firmware", status.version},
           {"rate", std::to_string(report.baud) + " Bd"},
           {"field of view", std::to_string(status.variant.angle_deg) + "\u00b0 by " +
                                 fixedReal(status.variant.resolution_cdeg / 100.0, 2) + "\u00b0"},
           {"window", (dirty ? "dirty, wipe it (" : "clean (") + dirt + ")", dirty},
-          {"condition", status.defective ? "reports a defect" : "no defect reported", status.defective}};
+          {"condition", failing ? "reports a defect" : "no defect reported", failing}};
 }
 
 Status LmsScannerUnit::release() {

@@ -59,6 +59,7 @@ class LmsScannerUnit : public ScannerUnit {
   std::size_t bad_then_ = 0, dropped_ = 0;
   std::optional<ScannerEvent> held_;  // follows the one that was just told
   std::vector<std::string> warnings_;
+  std::optional<lms2xx::StatusByte> latest_status_;  // of the last line
 };
 
 }  // namespace tiltmap

@@ -63,7 +63,7 @@ class ScannerUnit {
   virtual Status release() = 0;
   // What the operator should know, once each.
   virtual std::vector<std::string> takeWarnings() { return {}; }
-  // Identity and health as it told them when it was prepared.
+  // Identity and health: as it told them when it was prepared, and what its lines have told since.
   virtual std::vector<InstrumentFact> facts() const { return {}; }
 };
 

@@ -24,6 +24,7 @@
 #include "core/project/project.h"
 #include "core/world/experiment.h"
 #include "ui/look/theme.h"
+#include "ui/models/capture_model.h"
 #include "ui/models/strings.h"
 #include "ui/panels/view3d_panel.h"
 #include "ui/window/dock_area.h"
@@ -231,9 +232,53 @@ Json start(const std::string& project, const std::filesystem::path& folder) {
   return result;
 }
 
+// Stops captured in the window with emulated instruments, and how long each verdict took after its last line.
+Json verdicts(const std::filesystem::path& folder, int stops) {
+  constexpr double kSpeed = 4.0, kPatienceMs = 120e3;
+  const auto until = [](const auto& condition) {
+    const double begin = nowMs();
+    while (!condition() && nowMs() - begin < kPatienceMs)
+      QApplication::processEvents(QEventLoop::AllEvents, 5);
+    return condition();
+  };
+  Json result;
+  ui::Preferences preferences(ui::qt((folder / "settings.ini").string()));
+  ui::Theme theme(preferences);
+  auto* window = new ui::MainWindow(preferences, theme);
+  window->resize(1366, 768);
+  window->show();
+  std::filesystem::remove(folder / "verdict.tiltmap");
+  if (!window->workspace().session().create(ui::qt((folder / "verdict.tiltmap").string()))) return result;
+  window->setPerspective(ui::Perspective::Capture);
+  ui::CaptureModel& model = ui::captureModel(window->workspace());
+  CaptureSettings source;
+  source.emulate = CaptureDrive::Exp2Fixed;
+  source.speed = kSpeed;
+  model.connectTo(source);
+  bool well = until([&] { return model.state() == StationState::Ready; });
+  result["milliseconds"] = Json::array();
+  result["lights"] = Json::array();
+  for (int stop = 1; well && stop <= stops; ++stop) {
+    model.start({});
+    well = until([&] {
+      return model.now().sweep.number == stop && model.state() == StationState::Verdict &&
+             model.verdict().judgement().has_value();
+    });
+    if (!well) break;
+    const auto& judgement = *model.verdict().judgement();
+    result["milliseconds"].push_back(1e3 * judgement.after_last_line_s);
+    result["lights"].push_back(ui::utf8(ui::captureLightName(judgement.light)));
+  }
+  if (!well) result["trouble"] = ui::utf8(model.title() + ": " + model.sentence());
+  window->closeNow();
+  delete window;
+  std::filesystem::remove(folder / "verdict.tiltmap");
+  return result;
+}
+
 }  // namespace
 
-// frames FOLDER POINTS COLOURING [shaded] | start FOLDER PROJECT
+// frames FOLDER POINTS COLOURING [shaded] | start FOLDER PROJECT | verdict FOLDER STOPS
 int main(int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   if (words.size() < 3) return 2;
@@ -249,6 +294,8 @@ int main(int argc, char** argv) {
                     words.size() > 4 && words[4] == "shaded");
   else if (words[0] == "start")
     result = start(words[2], folder);
+  else if (words[0] == "verdict")
+    result = verdicts(folder, std::stoi(words[2]));
   std::cout << result.dump() << std::endl;
   std::filesystem::remove(folder / "large.tiltmap");
   return 0;

@@ -1,8 +1,10 @@
 #include "tests/benchmarks/window_run.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -35,6 +37,26 @@ std::string formatted(const char* format, Values... values) {
   std::array<char, 240> text{};
   std::snprintf(text.data(), text.size(), format, values...);
   return text.data();
+}
+
+// Stops captured in the window, each with its verdict. False where one came later than 0.5 s.
+bool addVerdictRow(Table& table, const std::string& command) {
+  constexpr double kLimitMs = 500.0;
+  const Json json = told(command);
+  if (json.is_null() || json.contains("trouble") || json.at("milliseconds").empty()) {
+    table.notes.push_back("Skipped: no stop was captured in the window. " +
+                          (json.is_null() ? std::string() : json.value("trouble", std::string())));
+    return json.is_null();
+  }
+  const auto times = json.at("milliseconds").get<std::vector<double>>();
+  const auto lights = json.at("lights").get<std::vector<std::string>>();
+  Row row{.subject = "stops captured in the window, emulated at four times their speed",
+          .program = "last line to verdict, slowest"};
+  row.wall_ms = *std::ranges::max_element(times);
+  for (std::size_t i = 0; i < times.size(); ++i)
+    row.remark += formatted("%s%.0f ms %s", i == 0 ? "" : "; ", times[i], lights[i].c_str());
+  table.rows.push_back(row);
+  return *row.wall_ms <= kLimitMs;
 }
 
 }  // namespace
@@ -113,6 +135,10 @@ bool addWindowRows(Table& table, const fs::path& benchmark, const fs::path& prog
   memory.remark = formatted("%.0f MB, at most %.0f MB", best.at("memory_mb").get<double>(),
                             best.at("memory_peak_mb").get<double>());
   table.rows.push_back(memory);
+  tell("verdicts in the window");
+  kept = addVerdictRow(
+             table, display + quoted(benchmark) + " verdict " + quoted(scratch / "verdict") + " 5" + quiet) &&
+         kept;
   return kept && *usable.wall_ms < 1000.0 && *drawn.wall_ms < 1000.0 && shown > 0 &&
          best.at("memory_peak_mb").get<double>() < 400.0;
 }

@@ -17,14 +17,21 @@ namespace {
 
 constexpr qint64 kDiskEvery_ms = 2000;
 
+bool sameFacts(const std::vector<InstrumentFact>& a, const std::vector<InstrumentFact>& b) {
+  return std::ranges::equal(a, b, [](const InstrumentFact& x, const InstrumentFact& y) {
+    return x.name == y.name && x.value == y.value && x.trouble == y.trouble;
+  });
+}
+
 // Lines come up to 75 times a second and are told by signals of their own.
 bool differs(const StationSnapshot& a, const StationSnapshot& b) {
   return a.state != b.state || a.doing != b.doing || a.error != b.error || a.live != b.live ||
          a.tilt_rad != b.tilt_rad || a.target_rad != b.target_rad || a.replays != b.replays ||
-         a.scanner.name != b.scanner.name || a.tilt.name != b.tilt.name ||
-         a.warnings.size() != b.warnings.size() || !a.line != !b.line || a.sweep.number != b.sweep.number ||
-         a.sweep.rows_taken != b.sweep.rows_taken || a.sweep.retries != b.sweep.retries ||
-         a.sweep.recoveries != b.sweep.recoveries || a.sweep.complete != b.sweep.complete;
+         a.scanner.name != b.scanner.name || !sameFacts(a.scanner.facts, b.scanner.facts) ||
+         a.tilt.name != b.tilt.name || a.warnings.size() != b.warnings.size() || !a.line != !b.line ||
+         a.sweep.number != b.sweep.number || a.sweep.rows_taken != b.sweep.rows_taken ||
+         a.sweep.retries != b.sweep.retries || a.sweep.recoveries != b.sweep.recoveries ||
+         a.sweep.complete != b.sweep.complete;
 }
 
 }  // namespace
@@ -121,9 +128,9 @@ void CaptureModel::connectTo(const CaptureSettings& source) {
   refused_.reset();
   station_->connect(source);
 }
-void CaptureModel::connectToWhatIsThere(const QString& tilt_options) {
+void CaptureModel::connectToWhatIsThere(const QString& tilt_options, const QString& network) {
   refused_.reset();
-  station_->connectToWhatIsThere(utf8(tilt_options));
+  station_->connectToWhatIsThere(utf8(tilt_options), utf8(network));
 }
 void CaptureModel::reconnect() {
   refused_.reset();

@@ -48,7 +48,8 @@ class CaptureModel : public QObject {
   bool isSweeping() const;   // a sweep's job is not over
 
   void connectTo(const CaptureSettings& source);
-  void connectToWhatIsThere(const QString& tilt_options);
+  // `network`: where a scanner in a network may be; empty: none is looked for there.
+  void connectToWhatIsThere(const QString& tilt_options, const QString& network = {});
   void reconnect();
   void disconnectInstruments();
   void jogBy(double angle_rad);

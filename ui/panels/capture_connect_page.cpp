@@ -108,6 +108,11 @@ QWidget* CaptureConnectPage::buildFind() {
            "What the tilt unit cannot tell: level=COUNTS, where the scanner looks straight ahead; min, max",
            "level=312525");
   form->addRow("Tilt &options", tilt_options_);
+  network_ = line("network", "Address of a scanner in the network",
+                  "Where an LMS1xx, LMS5xx or Hokuyo may be, beside what is plugged in: HOST or HOST:PORT; "
+                  "empty: none in a network",
+                  "192.168.0.1");
+  form->addRow("&Network", network_);
   return page;
 }
 
@@ -225,7 +230,7 @@ void CaptureConnectPage::connectNow() {
   CaptureSettings settings;
   switch (source()) {
     case Source::Find:
-      return model_.connectToWhatIsThere(tilt_options_->text().trimmed());
+      return model_.connectToWhatIsThere(tilt_options_->text().trimmed(), network_->text().trimmed());
     case Source::Named:
       settings.scanner = utf8(scanner_->text().trimmed());
       settings.tilt = utf8(tilt_->text().trimmed());
@@ -262,9 +267,10 @@ void CaptureConnectPage::refresh() {
   connect_->setEnabled(apart || model_.isConnected());
   source_->setEnabled(apart);
   for (QWidget* widget :
-       {static_cast<QWidget*>(tilt_options_), static_cast<QWidget*>(scanner_), static_cast<QWidget*>(tilt_),
-        static_cast<QWidget*>(drive_), static_cast<QWidget*>(seed_), static_cast<QWidget*>(speed_),
-        static_cast<QWidget*>(scanner_file_), static_cast<QWidget*>(tilt_file_)})
+       {static_cast<QWidget*>(tilt_options_), static_cast<QWidget*>(network_),
+        static_cast<QWidget*>(scanner_), static_cast<QWidget*>(tilt_), static_cast<QWidget*>(drive_),
+        static_cast<QWidget*>(seed_), static_cast<QWidget*>(speed_), static_cast<QWidget*>(scanner_file_),
+        static_cast<QWidget*>(tilt_file_)})
     widget->setEnabled(apart);
   const QStringList faults = model_.faults();
   if (fault_->count() != faults.size()) {

@@ -45,7 +45,7 @@ class CaptureConnectPage : public QWidget {
   PanelContext context_;
   QComboBox* source_;
   QStackedWidget* pages_;
-  QLineEdit *tilt_options_ = nullptr, *scanner_ = nullptr, *tilt_ = nullptr;
+  QLineEdit *tilt_options_ = nullptr, *network_ = nullptr, *scanner_ = nullptr, *tilt_ = nullptr;
   QComboBox* drive_ = nullptr;
   QSpinBox* seed_ = nullptr;
   QDoubleSpinBox* speed_ = nullptr;

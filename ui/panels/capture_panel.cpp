@@ -9,7 +9,6 @@
 #include <QLineEdit>
 #include <QProgressBar>
 #include <QPushButton>
-#include <QScrollArea>
 #include <QTabBar>
 #include <QTabWidget>
 #include <QVBoxLayout>
@@ -27,17 +26,6 @@
 namespace tiltmap::ui {
 
 namespace {
-
-QScrollArea* scrolled(QWidget* page, const QString& name, QWidget* parent) {
-  auto* scroll = new QScrollArea(parent);
-  scroll->setObjectName(name);
-  scroll->setWidget(page);
-  scroll->setWidgetResizable(true);
-  scroll->setFrameShape(QFrame::NoFrame);
-  scroll->setFocusPolicy(Qt::NoFocus);
-  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  return scroll;
-}
 
 // Gloves: everything that is pressed is tall.
 void makeTall(QWidget& root) {

@@ -3,6 +3,7 @@
 
 #include <QDoubleSpinBox>
 #include <QLabel>
+#include <QScrollArea>
 #include <QToolButton>
 
 #include "ui/look/icons.h"
@@ -50,6 +51,18 @@ inline QLabel* wrappedLabel(QWidget* parent, const QString& name) {
   label->setWordWrap(true);
   label->setTextInteractionFlags(Qt::TextSelectableByMouse);
   return label;
+}
+
+// As high as it needs, however little room there is.
+inline QScrollArea* scrolled(QWidget* page, const QString& name, QWidget* parent) {
+  auto* scroll = new QScrollArea(parent);
+  scroll->setObjectName(name);
+  scroll->setWidget(page);
+  scroll->setWidgetResizable(true);
+  scroll->setFrameShape(QFrame::NoFrame);
+  scroll->setFocusPolicy(Qt::NoFocus);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  return scroll;
 }
 
 // A length in metres, told when the number has been finished.

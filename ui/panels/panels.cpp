@@ -1,5 +1,6 @@
 // The list of the window's panels. A new one is declared in a file of its own and added here; its places are
 // in ui/window/perspectives.cpp.
+#include "ui/panels/calibration_panel.h"
 #include "ui/panels/capture_line_panels.h"
 #include "ui/panels/capture_panel.h"
 #include "ui/panels/depth_image_panel.h"
@@ -42,6 +43,9 @@ const std::vector<PanelInfo>& panels() {
        make<CaptureLinePanel>},
       {"capture-matrix", "Sweep", "range-matrix", "The range matrix of the sweep, filling line by line",
        make<CaptureMatrixPanel>},
+      {"calibration", "Calibration", "crosshairs",
+       "What the scans tell about their scanner: its errors, and where the machine stands in its view",
+       make<CalibrationPanel>},
       {"details", "Details", "documentinfo", "What is known about the selected scan or link",
        make<DetailsPanel>},
       {"localisation", "Localisation", "table", "Where the stops are, by stage", make<LocalisationPanel>},

@@ -14,6 +14,7 @@
 #include "ui/look/theme.h"
 #include "ui/models/photograph_model.h"
 #include "ui/models/strings.h"
+#include "ui/panels/calibration_panel.h"
 #include "ui/panels/details_panel.h"
 #include "ui/panels/photographs_panel.h"
 #include "ui/panels/project_tree_panel.h"
@@ -141,7 +142,11 @@ void MainWindow::showOperation(const QString& operation, const ParameterValues& 
     dialog = new OperationDialog(*found, *workspace_, theme_, this);
     dialog->setAttribute(Qt::WA_DeleteOnClose);
     // Where it is watched, compared and decided.
-    connect(dialog, &OperationDialog::proposalStarted, this, [this] { showPanel("relax"); });
+    connect(dialog, &OperationDialog::proposalStarted, this, [this, operation] {
+      showPanel(operation == "relax" ? "relax" : "calibration");
+      if (auto* panel = qobject_cast<CalibrationPanel*>(docks_->panel("calibration")))
+        panel->showPage(operation);
+    });
   }
   dialog->setValues(values);
   dialog->show();

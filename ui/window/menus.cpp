@@ -25,8 +25,9 @@ void fill(QMenu* menu, const ActionRegistry& actions, const QStringList& ids) {
 
 // Operations that no menu names (new ones) come where they are seen: under Register.
 QStringList otherOperations() {
-  static const QStringList kPlaced = {"simulate", "capture", "import", "register", "relax", "export",
-                                      "rebase",   "rename",  "report", "picture",  "merge"};
+  static const QStringList kPlaced = {"simulate", "capture",   "import",   "register", "relax",
+                                      "export",   "rebase",    "rename",   "report",   "picture",
+                                      "merge",    "calibrate", "body-mask"};
   QStringList ids;
   for (const Operation* operation : operations().all())
     if (!kPlaced.contains(qt(operation->id()))) ids << "op." + qt(operation->id());
@@ -60,7 +61,8 @@ void MainWindow::makeMenus() {
         "stage.clear"});
   fill(view, actions_, {"", "view.show-all", "view.show-only", "view.show", "view.hide", "", "view.palette"});
   fill(menuBar()->addMenu("&Capture"), actions_,
-       {"capture.open", "capture.stop", "", "file.capture", "op.capture", "", "op.import", "op.simulate"});
+       {"capture.open", "capture.stop", "", "file.capture", "op.capture", "", "panel.calibration",
+        "op.calibrate", "op.body-mask", "", "op.import", "op.simulate"});
   QMenu* registering = menuBar()->addMenu("&Register");
   fill(registering, actions_, {"op.register", "op.rebase"});
   fill(registering, actions_, otherOperations());

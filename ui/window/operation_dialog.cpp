@@ -7,6 +7,7 @@
 #include <QPushButton>
 #include <QScrollArea>
 #include <QVBoxLayout>
+#include <algorithm>
 
 #include "ui/look/theme.h"
 #include "ui/models/parameter_model.h"
@@ -25,9 +26,16 @@ QString verb(const Operation& operation) {
   return qt(operation.title()).section(' ', 0, 0);
 }
 
-// Its result is looked at before it is stored: every scan may move.
+// Its result is looked at before it is stored: every scan may move, or change.
 bool endsAsProposal(const Operation& operation) {
-  return operation.id() == "relax";
+  return operation.id() == "relax" || operation.id() == "calibrate" || operation.id() == "body-mask";
+}
+
+// Where it says whether the result is stored, the one who looks at the proposal says so instead.
+constexpr const char* kApply = "apply";
+bool asksWhetherToApply(const Operation& operation) {
+  return endsAsProposal(operation) && std::ranges::find(operation.parameters(), kApply,
+                                                        &ParameterInfo::name) != operation.parameters().end();
 }
 
 }  // namespace
@@ -50,6 +58,7 @@ OperationDialog::OperationDialog(const Operation& operation, Workspace& workspac
   setModal(false);
   model_->restore(workspace.preferences().lastParameters(qt(operation.id())));
   form_ = new ParameterForm(*model_, workspace.preferences(), theme, this);
+  if (asksWhetherToApply(operation)) form_->leaveOut({kApply});
 
   auto* help = new QLabel(qt(operation.help()).remove('`'), this);
   help->setWordWrap(true);
@@ -153,12 +162,14 @@ void OperationDialog::refresh() {
 
 void OperationDialog::refreshCheck() {
   const SnapshotPtr snapshot = workspace_.snapshot();
+  ParameterValues values = model_->values();
+  if (asksWhetherToApply(operation_)) values[kApply] = true;
   QString problem;
   if (model_->hasErrors()) {
     problem = "Some values are not allowed: see above.";
   } else if (!snapshot) {
     problem = "No project is open.";
-  } else if (const Status status = operation_.check(*snapshot, model_->values()); !status) {
+  } else if (const Status status = operation_.check(*snapshot, values); !status) {
     problem = qt(status.error().what) + ": " + qt(status.error().remedy) + ".";
     problem[0] = problem[0].toUpper();
   }
@@ -173,6 +184,7 @@ void OperationDialog::run() {
   request.operation = &operation_;
   request.preset = model_->preset();
   request.values = model_->changes();
+  if (asksWhetherToApply(operation_)) request.values[kApply] = true;
   request.ask = endsAsProposal(operation_);
   workspace_.preferences().setLastParameters(qt(operation_.id()), model_->last());
   if (!workspace_.start(request)) return;

@@ -43,6 +43,7 @@ std::vector<DockPlace> delivered(Perspective perspective) {
               // They ask for more width than half of the middle has.
               {"depth-image", Tab, "view3d", 0},
               {"photographs", Tab, "view3d", 0},
+              {"calibration", Tab, "view3d", 0},
               {"details", Tab, "project-tree", 0}};
     case Perspective::Inspect:
       return {{"view3d", Left, "", 0},

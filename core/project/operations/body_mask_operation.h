@@ -7,8 +7,8 @@
 
 namespace tiltmap {
 
-// "body-mask". With `apply` the scans named get the minimum range that keeps the body out (their geometry's;
-// stored ranges stay), which can be undone.
+// "body-mask". With `apply` the cells found are left out of the scans named (cell_code::kMasked) and, where
+// one keeps the body out, the scans get its minimum range; stored ranges stay, and all of it can be undone.
 std::unique_ptr<Operation> makeBodyMaskOperation();
 
 }  // namespace tiltmap

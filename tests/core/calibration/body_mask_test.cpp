@@ -1,10 +1,13 @@
 #include "core/calibration/body_mask.h"
 
+#include <fstream>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "core/base/random.h"
 #include "tests/support/range_images.h"
+#include "tests/support/temporary_folder.h"
 
 namespace tiltmap {
 namespace {
@@ -88,6 +91,46 @@ TEST(BodyMask, TextHoldsEveryRun) {
   EXPECT_EQ(json["runs_row_first_last"].size(), 5U);
   EXPECT_EQ(json["runs_row_first_last"][4], nlohmann::json({4, 9, 20}));
   EXPECT_EQ(json["cells"], 40);
+}
+
+TEST(BodyMask, WhatIsMaskedAlreadyStaysSoAndIsNotFoundAgain) {
+  std::vector<RangeImagePtr> masked;
+  for (const std::uint64_t seed : {1U, 2U}) {
+    RangeImageData data = scan(seed)->data();
+    ASSERT_TRUE(maskCells(cellsOf(*learnBodyMask({scan(1)}, {})), data));
+    masked.push_back(imageOf(std::move(data)));
+  }
+  const auto again = learnBodyMask(masked, {});
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->cells, 0U);
+  EXPECT_EQ(cellsOf(*again), cellsOf(*learnBodyMask({scan(1)}, {}))) << "and gets no second margin";
+  masked.push_back(scan(3));
+  const auto with_new = learnBodyMask(masked, {});
+  ASSERT_TRUE(with_new);
+  EXPECT_EQ(with_new->cells, 40U) << "a scan that came later shows it still";
+  EXPECT_EQ(cellsOf(*with_new), cellsOf(*learnBodyMask({scan(1)}, {})));
+}
+
+TEST(BodyMask, FileReadsBack) {
+  test::TemporaryFolder folder;
+  const auto mask = learnBodyMask({scan(1)}, {});
+  const auto write = [&](const std::string& text) { std::ofstream(folder / "m.json") << text; };
+  write(bodyMaskText(*mask));
+  const auto read = readBodyMask(folder / "m.json");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->cells, cellsOf(*mask));
+  EXPECT_EQ(read->minimum_range_m, mask->minimum_range_m);
+  EXPECT_FALSE(readBodyMask(folder / "none.json"));
+  for (const char* text :
+       {"", "x", "[]", "{}", R"({"format": "tiltmap calibration 1"})",
+        R"({"format": "tiltmap body mask 1", "rows": 2, "columns": 2})",
+        R"({"format": "tiltmap body mask 1", "rows": 2, "columns": 2, "minimum_range_m": 0,
+                               "runs_row_first_last": [[0, 0, 2]]})",
+        R"({"format": "tiltmap body mask 1", "rows": 2, "columns": 2, "minimum_range_m": -1,
+                               "runs_row_first_last": []})"}) {
+    write(text);
+    EXPECT_FALSE(readBodyMask(folder / "m.json")) << text;
+  }
 }
 
 TEST(BodyMask, RefusesWhatDoesNotFitTogether) {

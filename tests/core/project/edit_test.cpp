@@ -75,6 +75,11 @@ std::vector<NamedEdit> everyEdit() {
          geometry.lever_arm_m.x() = 0.5;
          return single(SetGeometry{id(p, 1), geometry});
        }},
+      {"mask cells",
+       [=](const Project& p) {
+         const ScanEntry& scan = p.snapshot()->scans()[1];
+         return single(SetBodyMask{scan.id, CellMask{scan.rows, scan.columns, {{0, 0, 1}, {1, 1, 1}}}});
+       }},
       {"re-base", [=](const Project& p) { return must(rebaseEdit(p.snapshot(), id(p, 1), Pose())); }},
       {"survey",
        [](const Project&) {
@@ -204,6 +209,9 @@ TEST_F(EditTest, RefusedEditsLeaveEverythingAsItWas) {
       ReorderScans{{id(0), id(1)}},
       ReorderScans{{id(0), id(1), id(1)}},
       SetGeometry{id(0), other_size},
+      SetBodyMask{id(0), CellMask{1, 1, {{0, 0, 0}}}},
+      SetBodyMask{id(0), CellMask{0, 0, {}}},
+      SetBodyMask{99, std::nullopt},
       AddScan{bad_geometry, {}, {}, {}, {}},
       fails,
       AddPhotograph{id(0), {}},

@@ -65,9 +65,13 @@ class CapturePanelTest : public WindowTest {
   bool isEnabled(const QString& name) { return find(name)->isEnabled(); }
   // To be looked at: each state as a picture, where TILTMAP_PICTURES names a folder.
   void take(const char* name) {
-    settle();
-    if (const char* where = std::getenv("TILTMAP_PICTURES")) {
-      EXPECT_TRUE(window->grab().save(QString("%1/%2.png").arg(where, name)));
+    const char* where = std::getenv("TILTMAP_PICTURES");
+    if (!where) return;
+    for (const bool dark : {true, false}) {
+      preferences.setTheme(dark ? ui::ThemeChoice::Dark : ui::ThemeChoice::Light);
+      settle();
+      const QString file = QString("%1/%2-%3.png").arg(where, name, dark ? "dark" : "light");
+      EXPECT_TRUE(window->grab().save(file));
     }
   }
   void expectStopIsThere() {
@@ -170,6 +174,20 @@ TEST_F(CapturePanelTest, StopInASweepKeepsTheLinesAndGoOnTakesTheRest) {
   ASSERT_TRUE(comes(StationState::Verdict));
   settle();
   EXPECT_FALSE(find("capture-resume")->isVisible());
+}
+
+TEST_F(CapturePanelTest, ADirtyWindowIsToldWhileItIsDirty) {
+  connected();
+  const auto health = [&] { return find<QLabel>("capture-instruments")->text(); };
+  ASSERT_TRUE(waitUntil([&] { return health().contains("window: clean"); })) << health().toStdString();
+  EXPECT_TRUE(health().contains("no defect reported"));
+  const int at = find<QComboBox>("capture-fault")->findText("dirty-window");
+  ASSERT_GE(at, 0);
+  find<QComboBox>("capture-fault")->setCurrentIndex(at);
+  click("capture-order-fault");
+  ASSERT_TRUE(waitUntil([&] { return health().contains("! window: dirty, wipe it"); }))
+      << health().toStdString();
+  take("dirty");
 }
 
 // As slow as real instruments are: what a sweep looks like on its way.

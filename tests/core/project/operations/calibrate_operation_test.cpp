@@ -8,6 +8,7 @@
 #include "core/project/job.h"
 #include "core/project/operation.h"
 #include "core/project/project.h"
+#include "tests/support/body_scans.h"
 #include "tests/support/program.h"
 #include "tests/support/range_images.h"
 
@@ -110,24 +111,17 @@ TEST_F(CalibrateOperationTest, RefusesWhatMakesNoSense) {
 TEST_F(CalibrateOperationTest, TheMinimumRangeKeepsTheBodyOutAndIsTakenBack) {
   using namespace testing_support;
   EXPECT_FALSE(run("body-mask", {})) << "no scans";
-  const ScannerGeometry geometry = smallGeometry(10, 12);
-  std::vector<Scan> scans(3);
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    RangeImageData data = evenData(geometry, 6.0F + static_cast<float>(i));
-    for (int column = 4; column < 8; ++column) setCell(data, 0, column, 0.4F);
-    scans[i] = {imageOf(std::move(data)), geometry, Pose(), "s", "test"};
-  }
-  ASSERT_TRUE(project_->apply(importEdit(std::move(scans))));
+  ASSERT_TRUE(project_->apply(importEdit(scansWithBody(3))));
   const std::string file = (folder_ / "mask.json").string();
   const auto looked = run("body-mask", {{"out", file}});
   ASSERT_TRUE(looked) << looked.error().what;
-  EXPECT_EQ(nlohmann::json::parse(looked->report_json)["cells"], 4);
+  EXPECT_EQ(nlohmann::json::parse(looked->report_json)["cells"], kBodyCells);
   EXPECT_TRUE(std::ifstream(file).good());
   EXPECT_EQ((*scan(1).image())->validCells(), 120U);
   ASSERT_TRUE(run("body-mask", {{"apply", true}}));
   EXPECT_NEAR(scan(1).geometry.minimum_range_m, 0.45, 1e-6);
-  EXPECT_EQ((*scan(1).image())->validCells(), 116U);
-  EXPECT_EQ((*scan(1).image())->code(0, 5), cell_code::kOutOfBounds);
+  EXPECT_EQ((*scan(1).image())->validCells(), 120U - kBodyAndMargin) << "with one cell of margin";
+  EXPECT_EQ((*scan(1).image())->code(0, 5), cell_code::kMasked);
   EXPECT_TRUE(project_->verify());
   const auto again = run("body-mask", {{"apply", true}});
   ASSERT_TRUE(again);
