@@ -74,6 +74,9 @@ const ParameterTable<JudgementSettings>& judgementParameters() {
     t.real("covariance-patches", &S::covariance_patches, "", 0.01, 1000.0,
            "The same where patches were held against patches.",
            "ours: normalised error squared of simulated drives, seeds 101 to 103, rounded up");
+    t.real("covariance-overlap", &S::covariance_overlap, "", 0.0, 1.0,
+           "Below this overlap the covariance is multiplied by it over the overlap.",
+           "ours: normalised error squared of simulated drives by overlap, seeds 101 to 106: 6.0 of 6 below it");
     return t;
   }();
   return table;

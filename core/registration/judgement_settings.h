@@ -36,6 +36,8 @@ struct JudgementSettings {
   // Calibration: the covariance of the pose is so many times the inverse of the registration's information.
   double covariance_cells = 1.0;
   double covariance_patches = 1.0;
+  // Below this overlap it grows as the overlap falls: few surfaces average nothing out.
+  double covariance_overlap = 0.3;
 };
 
 // Descriptions, ranges and sources.

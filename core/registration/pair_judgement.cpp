@@ -304,8 +304,11 @@ PairJudgement judgePair(const JudgedScan& fixed, const JudgedScan& moving, const
   j.expected_m = 0.6745 * std::sqrt(medianOf(found.fitting_variances));
 
   const Hold hold = holdAt(fixed, moving, claim.fixed_from_moving, found);
-  j.strength = strengthOf(hold.information, claim.fixed_from_moving,
-                          hold.by_cells ? settings.covariance_cells : settings.covariance_patches, hold.pull);
+  constexpr double kLeastOverlap = 0.05;
+  const double scarce =
+      std::max(1.0, settings.covariance_overlap / std::max(kLeastOverlap, j.overlap()));
+  const double factor = hold.by_cells ? settings.covariance_cells : settings.covariance_patches;
+  j.strength = strengthOf(hold.information, claim.fixed_from_moving, scarce * factor, hold.pull);
   // Cells only see near their surfaces: patches may still pull where they do not.
   for (const Vector6d& step : {hold.pull, solvedStep(found.system, found.condition)}) {
     const PoseDifference pull = difference(claim.fixed_from_moving, claim.fixed_from_moving.moved(step));

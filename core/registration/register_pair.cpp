@@ -15,11 +15,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Blocks know their noise, so that nearly all of their pairs agree at the right pose: on simulated drives
-// 0.85 or more of them, in wrong minima 0.5 to 0.8. Ours.
-constexpr double kBlocksDoubted = 0.75;
-constexpr double kBlocksRefused = 0.65;
-
 Status checkStart(const Pose& start, const RegistrationSettings& settings) {
   if (Status status = checkSettings(settings); !status) return status;
   if (!start.isFinite())
@@ -60,18 +55,6 @@ double worstDeviation(const PairResult& result) {
   if (!information.isInvertible()) return std::numeric_limits<double>::infinity();
   const Eigen::Matrix3d covariance = information.inverse().bottomRightCorner<3, 3>();
   return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
-}
-
-bool areBlocks(const PreparedScan& fixed, const PreparedScan& moving) {
-  return fixed.raster && moving.raster;
-}
-
-// A result that agrees less than this is doubted; 0: none is.
-double doubtedBelow(const PreparedScan& fixed, const PreparedScan& moving,
-                    const RegistrationSettings& settings) {
-  const bool blocks = areBlocks(fixed, moving) && settings.loss == Loss::Annealed;
-  return blocks && settings.retry_agreement > 0.0 ? std::max(kBlocksDoubted, settings.retry_agreement)
-                                                  : settings.retry_agreement;
 }
 
 bool wantsCubes(const PreparedScan& fixed, const PreparedScan& moving, const PairResult& result,
@@ -149,7 +132,7 @@ bool PairRegistration::takes(const PairResult& result) const {
   if (!best_) return true;
   if (attempt().kind == AttemptKind::Cubes) return result.succeeded() || !best_->succeeded();
   // Another heading must leave no doubt of its own, or two strange scans would be talked into a fit.
-  return result.agreement >= doubtedBelow(*fixed_, *moving_, settings_) && fit(result) > fit(*best_);
+  return result.agreement >= settings_.retry_agreement && fit(result) > fit(*best_);
 }
 
 void PairRegistration::conclude() {
@@ -164,16 +147,9 @@ void PairRegistration::conclude() {
     best_ = std::move(result);
     chosen_ = next_ - 1;
   }
-  // Blocks know better than cubes what is wrong, so that other headings are tried with them first.
-  if (next_ == plan_.size()) planHeadings();
-  if (next_ == plan_.size()) planCubes();
+  if (attempt().kind == AttemptKind::Given) planCubes();
+  if (next_ == plan_.size() && attempt().kind != AttemptKind::OtherHeading) planHeadings();
   if (next_ < plan_.size()) return;
-  // No other heading fitted better, and this is not what blocks of the same surfaces look like; nor are cubes
-  // believed that agree no more.
-  double refused_below = blocks_doubted_ ? kBlocksRefused : 0.0;
-  if (areBlocks(*fixed_, *moving_))
-    refused_below = std::min(kBlocksRefused, doubtedBelow(*fixed_, *moving_, settings_));
-  if (best_->succeeded() && best_->agreement < refused_below) best_->stop_reason = StopReason::NoOverlap;
   best_->retries = static_cast<int>(
       std::ranges::count(plan_, AttemptKind::OtherHeading, [](const PairAttempt& a) { return a.kind; }));
   best_->warnings = fixed_->warnings;
@@ -184,16 +160,13 @@ void PairRegistration::conclude() {
 }
 
 void PairRegistration::planCubes() {
-  const auto is_cubes = [](const PairAttempt& attempt) { return attempt.kind == AttemptKind::Cubes; };
-  if (std::ranges::any_of(plan_, is_cubes) || !wantsCubes(*fixed_, *moving_, *best_, settings_)) return;
-  blocks_doubted_ = best_->succeeded() && best_->agreement < doubtedBelow(*fixed_, *moving_, settings_);
-  plan_.push_back({AttemptKind::Cubes, best_->start, plan_[*chosen_].turned_rad});
+  if (wantsCubes(*fixed_, *moving_, *best_, settings_))
+    plan_.push_back({AttemptKind::Cubes, plan_.front().start, 0.0});
 }
 
 void PairRegistration::planHeadings() {
-  const auto is_other = [](const PairAttempt& attempt) { return attempt.kind == AttemptKind::OtherHeading; };
-  if (std::ranges::any_of(plan_, is_other) || fixed_->elements.empty() || moving_->elements.empty()) return;
-  if (best_->agreement >= doubtedBelow(*fixed_, *moving_, settings_)) return;
+  if (best_->agreement >= settings_.retry_agreement || fixed_->elements.empty() || moving_->elements.empty())
+    return;
   for (const double turns : {1.0, -1.0, 2.0, -2.0}) {
     const double turned = turns * settings_.retry_heading_rad;
     plan_.push_back(

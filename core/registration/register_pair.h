@@ -38,10 +38,9 @@ struct PairResult {
 // Where patch-grouping auto cut a matrix into blocks and the result failed, agrees too little or is known
 // badly in some direction (retry_deviation), both scans are cut into cubes instead, which catch small things
 // better.
-// A result that agrees less than retry_agreement (blocks, whose noise is known: than 0.75) is doubted: the
-// pair is registered again from other headings of the moving scan. One of them is taken where it is not
-// doubted itself and fits more (overlap times agreement). Headings are tried before cubes. What blocks leave
-// in doubt and agrees less than 0.65 in the end is no overlap.
+// A result that agrees less than retry_agreement is doubted: the pair is registered again from other headings
+// of the moving scan. One of them is taken where it is not doubted itself and fits more (overlap times
+// agreement).
 //
 // Why the steps of a pair began anew.
 enum class AttemptKind {
@@ -95,7 +94,6 @@ class PairRegistration {
   std::vector<StepReport> steps_;  // of the present attempt
   std::optional<PairResult> best_;
   std::optional<std::size_t> chosen_;
-  bool blocks_doubted_ = false;  // before cubes were tried
   bool cancelled_ = false;
 };
 
