@@ -9,6 +9,12 @@
 
 namespace tiltmap::ui {
 
+namespace {
+
+constexpr std::size_t kNamedRows = 4;  // in one line; the table marks all
+
+}  // namespace
+
 LocalisationModel::LocalisationModel(Workspace& workspace, QObject* parent)
     : QAbstractTableModel(parent), workspace_(workspace) {
   connect(&workspace.session(), &ProjectSession::snapshotReplaced, this, &LocalisationModel::readAgain);
@@ -45,10 +51,12 @@ QString LocalisationModel::summary() const {
                .arg(smallLengthText(evaluation_->rmse_translation_m, workspace_.preferences().lengthUnit()),
                     qt(fixedReal(evaluation_->rmse_rotation_deg, 3)));
   if (overruled_.empty()) return text;
+  if (!text.isEmpty()) text += "; ";
+  if (overruled_.size() > kNamedRows)
+    return text + QString("odometry overruled at %1 stops").arg(overruled_.size());
   QStringList stops;
   for (const OverruledRow& row : overruled_) stops << QString::number(row.scan);
-  return text + (text.isEmpty() ? "" : "; ") +
-         QString("odometry overruled at stop%1 %2").arg(stops.size() > 1 ? "s" : "", stops.join(", "));
+  return text + QString("odometry overruled at stop%1 %2").arg(stops.size() > 1 ? "s" : "", stops.join(", "));
 }
 
 const OverruledRow* LocalisationModel::overruled(std::size_t stop) const {

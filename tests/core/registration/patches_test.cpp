@@ -82,10 +82,12 @@ TEST(PlaneAxes, AreThoseOfTheCovariance) {
     EXPECT_NEAR(found.values[1], expected[1], tolerance * expected[1] + 1e-12);
     EXPECT_NEAR(found.values[2], expected[2], 1e-9 * expected[2]);
     EXPECT_LT((found.axes.transpose() * found.axes - Eigen::Matrix3d::Identity()).norm(), 1e-9);
-    if (expected[1] > 2.0 * expected[0])
+    if (expected[1] > 2.0 * expected[0]) {
       EXPECT_GT(std::abs(found.axes.col(0).dot(solver.eigenvectors().col(0))), 1.0 - 1e-6);
-    if (expected[2] > 2.0 * expected[1])
+    }
+    if (expected[2] > 2.0 * expected[1]) {
       EXPECT_GT(std::abs(found.axes.col(2).dot(solver.eigenvectors().col(2))), 1.0 - 1e-6);
+    }
     EXPECT_LE(leastResidual(covariance), expected[0] * (1.0 + 1e-6) + 1e-15);
     EXPECT_GE(3.001 * leastResidual(covariance) + 1e-12, expected[0]);
   }

@@ -196,9 +196,10 @@ TEST_F(SiteModelsTest, LinksAreHeldAgainstEachOtherOnlyWhenTheyChange) {
   EXPECT_EQ(map.links()[4].quality, LinkQuality::Bad);
   must(workspace.session().apply(linkStateEdit(link(3), LinkState::Disabled)));
   EXPECT_EQ(workspace.linkOpinions().computed(), first + 1);
+  must(workspace.session().apply(linkStateEdit(link(3), LinkState::Active)));
   must(workspace.session().apply(
       ProjectEdit{"forget", {SetLinkJudgements{{{link(0), nullptr}}}}, nullptr, {}, {}}));
-  EXPECT_EQ(workspace.linkOpinions().computed(), first + 2);
+  EXPECT_EQ(workspace.linkOpinions().computed(), first + 3);
   EXPECT_EQ(map.links()[0].quality, LinkQuality::NotJudged);
   EXPECT_EQ(table.index(0, LinkTableModel::Overlap).data().toString(), "–");
 }
