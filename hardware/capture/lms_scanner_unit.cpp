@@ -112,6 +112,9 @@ LineTimes LmsScannerUnit::timesOf(std::size_t bytes_here) {
   const Duration scan = durationOf(kTurnS * scanner_.variant().turns());
   const Duration period = durationOf(scanner_.streamPeriod());
   began_ = std::min(began_, last_byte_ - channel_->line().wireTime(bytes_here));
+  // After a pause nobody knows whether a telegram was measured now or lay somewhere meanwhile: the rhythm has
+  // to be found anew, and until then no line is believed.
+  if (!recent_.empty() && began_ - recent_.back() > period + period / 2) recent_.clear();
   // Telegrams begin in an even rhythm: what earlier ones tell of it holds for this one, whose own first bytes
   // may have been held back by an adapter or by a machine that was busy.
   Instant began = began_;
