@@ -220,7 +220,12 @@ void RelaxationModel::readNews() {
     if (news.now) state_ = *news.now;
     any = true;
   }
-  // A pause that takes effect brings no news but this.
+  // A pause that takes effect brings no news but this, and is worth a word of its own: buttons wait for it.
+  const bool held = isHolding();
+  if (held != held_) {
+    held_ = held;
+    Q_EMIT changed();
+  }
   if ((any || isPaused()) && !soon_.isActive()) soon_.start();
 }
 

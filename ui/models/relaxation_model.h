@@ -125,6 +125,7 @@ class RelaxationModel : public QObject {
   std::vector<RelaxationLink> links_;
   QStringList log_;
   bool before_shown_ = false;
+  bool held_ = false;  // as it was told last
   int hold_at_ = 0;
 };
 

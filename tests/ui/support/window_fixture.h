@@ -79,8 +79,9 @@ class WindowTest : public ::testing::Test {
   void click(const QString& name, QWidget* under = nullptr) {
     auto* widget = find(name, under);
     ASSERT_NE(widget, nullptr);
-    ASSERT_TRUE(widget->isVisible()) << name.toStdString();
-    ASSERT_TRUE(widget->isEnabled()) << name.toStdString();
+    // As a person does who waits for a button to come alive: panels follow a worker by their own pace.
+    ASSERT_TRUE(waitUntil([&] { return widget->isVisible() && widget->isEnabled(); }))
+        << name.toStdString() << (widget->isVisible() ? " is not enabled" : " cannot be seen");
     QTest::mouseClick(widget, Qt::LeftButton);
     settle();
   }
