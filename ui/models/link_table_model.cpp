@@ -127,6 +127,8 @@ QVariant LinkTableModel::number(std::size_t row, int column) const {
       return scans ? scans->fit : -1.0;
     case Residual:
       return scans ? scans->residual_m : -1.0;
+    case Correspondences:
+      return link.correspondences;
     case Weakest:
       return scans ? scans->strength.weakest_m : -1.0;
     case Moved:
@@ -175,6 +177,8 @@ QString LinkTableModel::text(std::size_t row, int column) const {
       return scans ? percent(scans->fit) : none;
     case Residual:
       return scans ? small(scans->residual_m) : none;
+    case Correspondences:
+      return link.correspondences > 0 ? QString::number(link.correspondences) : none;
     case Weakest:
       return scans ? small(2.0 * scans->strength.weakest_m) : none;
     case Moved:
@@ -246,6 +250,7 @@ QVariant LinkTableModel::headerData(int section, Qt::Orientation orientation, in
                               "Overlap (%)",
                               "Fit (%)",
                               "Residual (" + small + ")",
+                              "Correspondences",
                               "Held (" + small + ")",
                               "Moved (" + small + ")",
                               "Others (" + small + ")",
@@ -265,6 +270,8 @@ QVariant LinkTableModel::headerData(int section, Qt::Orientation orientation, in
       "Share of one scan's surfaces that lie on the other's, by the scan that shows more",
       "Of the surfaces that both scans could see, the share that lies on the other",
       "Median distance of the surfaces that fit",
+      "Correspondences that the registration ended with, after rejection: of patches, cells or points, by its "
+      "preset",
       "Two deviations of the place in the direction that the surfaces hold least",
       "How far the pose lies from where its registration began",
       "How far from the link's pose the other links together put its scans",

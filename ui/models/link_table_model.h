@@ -24,6 +24,7 @@ class LinkTableModel : public QAbstractTableModel {
     Overlap,
     Fit,
     Residual,
+    Correspondences,
     Weakest,
     Moved,
     Others,

@@ -240,14 +240,19 @@ void SiteMapView::drawNorth(QPainter& painter) const {
   const double length = std::hypot(up.x(), up.y());
   if (length < 1e-6) return;
   up /= length;
-  const QPointF middle(width() - 24.5, height() - 34.5), tip = middle + 15 * up;
+  // The letter stands at the arrow's foot, wherever that is, within the view.
+  const QFontMetricsF metrics(painter.font());
+  const double to_letter = 15.0 + 0.6 * metrics.height();
+  const QPointF middle(width() - 24.5, height() - 4.5 - to_letter - 0.5 * metrics.height());
+  const QPointF tip = middle + 15 * up, letter = middle - to_letter * up;
   const QPointF aside(-up.y(), up.x());
   const QColor text = palette().color(QPalette::Text);
   painter.setPen(QPen(text, 2.0));
   painter.drawLine(middle - 15 * up, tip);
   painter.setBrush(text);
   painter.drawPolygon(QPolygonF({tip, tip - 7 * up + 4 * aside, tip - 7 * up - 4 * aside}));
-  drawLabel(painter, middle - 15 * up + QPointF(-4, 2), name, text, palette().color(QPalette::Base));
+  drawLabel(painter, letter - QPointF(metrics.horizontalAdvance(name), metrics.height()) / 2, name, text,
+            palette().color(QPalette::Base));
 }
 
 void SiteMapView::drawLegend(QPainter& painter) const {

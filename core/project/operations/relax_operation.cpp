@@ -10,6 +10,7 @@
 
 #include "core/base/parallel.h"
 #include "core/multiview/relaxation.h"
+#include "core/project/link_judgement.h"
 #include "core/project/link_what_if.h"
 #include "core/project/operations/index_list.h"
 #include "core/project/operations/link_consistency.h"
@@ -25,9 +26,11 @@ struct RelaxSettings {
   int threads = 0;
 };
 
-// Registering the pairs first, where nobody has, and preparing the scans, as shares of the progress.
+// Registering the pairs first, where nobody has, preparing the scans, and judging what was found, as shares of
+// the progress that is left then.
 constexpr double kRegistering = 0.4;
 constexpr double kPreparing = 0.3;
+constexpr double kJudging = 0.1;
 
 const ParameterTable<RelaxSettings>& relaxTable() {
   static const ParameterTable<RelaxSettings> table = [] {
@@ -247,8 +250,30 @@ nlohmann::json reportOf(const RelaxationResult& result) {
   return report;
 }
 
+// Holds the scans of each link that was found against each other: it stands in the table beside registered
+// ones, and can be trusted or not as they can.
+Status judgeFound(const ProjectSnapshot& snapshot, const std::vector<PreparedScanPtr>& scans,
+                  const std::vector<Pose>& world_from_scan, int threads, const JobControl& control,
+                  std::vector<Link>& found) {
+  std::vector<PairToJudge> pairs;
+  for (const Link& link : found) {
+    PairToJudge pair{snapshot.indexOf(link.fixed).value(), snapshot.indexOf(link.moving).value(), {}};
+    pair.claim.fixed_from_moving = link.fixed_from_moving;
+    pair.claim.start = world_from_scan[pair.fixed].inverse() * world_from_scan[pair.moving];
+    pairs.push_back(std::move(pair));
+  }
+  auto judged = judgePairs(
+      pairs, [&](std::size_t i) { return Result<JudgedScanPtr>(judgedScan(scans[i])); }, threads, {},
+      control);
+  if (!judged) return fail(judged.error());
+  for (std::size_t k = 0; k < found.size(); ++k)
+    found[k].judgement = std::make_shared<const PairJudgement>(std::move((*judged)[k]));
+  return {};
+}
+
 // Poses and links as one edit, with those of the registration that came first.
-ProjectEdit editOf(const SnapshotPtr& snapshot, RelaxStart start, const RelaxationResult& result) {
+ProjectEdit editOf(const SnapshotPtr& snapshot, RelaxStart start, std::vector<Link> found,
+                   const RelaxationResult& result) {
   std::vector<std::pair<ScanId, Pose>> poses;
   for (std::size_t i = 0; i < result.poses.size(); ++i)
     poses.emplace_back(snapshot->scans()[i].id, result.poses[i]);
@@ -256,7 +281,6 @@ ProjectEdit editOf(const SnapshotPtr& snapshot, RelaxStart start, const Relaxati
   if (start.registered_first) edit.title = "register and " + edit.title;
   edit.steps.insert(edit.steps.begin(), std::make_move_iterator(start.steps.begin()),
                     std::make_move_iterator(start.steps.end()));
-  std::vector<Link> found = newLinks(*snapshot, start.links, result);
   // First, while they are surely there.
   if (auto stale = staleLinks(*snapshot, found); !stale.empty())
     edit.steps.insert(edit.steps.begin(), DeleteLinks{std::move(stale)});
@@ -350,9 +374,17 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
     addLinks(*snapshot, consistent->links, input);
     if (feed_) feed_->began(beginningOf(*snapshot, input, settings));
 
+    const std::vector<PreparedScanPtr> scans = input.scans;
+    const std::vector<Pose> started_at = input.world_from_scan;
+    const double relaxed_at = 1.0 - kJudging * (1.0 - prepared_at);
     auto result = relax(std::move(input), settings.relaxation, settings.threads,
-                        part(control, prepared_at, 1.0), watchFor(feed_.get(), control.stop));
+                        part(control, prepared_at, relaxed_at), watchFor(feed_.get(), control.stop));
     if (!result) return fail(result.error());
+    std::vector<Link> found = newLinks(*snapshot, start->links, *result);
+    if (Status status = judgeFound(*snapshot, scans, started_at, settings.threads,
+                                   part(control, relaxed_at, 1.0), found);
+        !status)
+      return fail(status.error());
     outcome.warnings.insert(outcome.warnings.end(), result->warnings.begin(), result->warnings.end());
 
     nlohmann::json report = reportOf(*result);
@@ -364,7 +396,7 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
     report["warnings"] = outcome.warnings;
     outcome.report_json = report.dump();
 
-    outcome.edit = editOf(snapshot, std::move(*start), *result);
+    outcome.edit = editOf(snapshot, std::move(*start), std::move(found), *result);
     return outcome;
   }
 

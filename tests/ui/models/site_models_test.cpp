@@ -153,6 +153,7 @@ TEST_F(SiteModelsTest, TheLinkTableKnowsTheWorstLink) {
   EXPECT_EQ(cell(LinkTableModel::Overlap), "42");
   EXPECT_EQ(cell(LinkTableModel::Fit), "93");
   EXPECT_EQ(cell(LinkTableModel::Residual), "5.1");
+  EXPECT_EQ(cell(LinkTableModel::Correspondences), QString::number(snapshot().links()[0].correspondences));
   EXPECT_NEAR(table.index(4, LinkTableModel::Others).data().toDouble(), 538.5, 0.5);
   EXPECT_GT(table.index(4, LinkTableModel::Times).data().toDouble(), 5.0);
   EXPECT_NEAR(table.index(4, LinkTableModel::Loop).data().toDouble(), 538.5, 0.5);

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/registration/pair_judgement.h"
 #include "tests/support/program.h"
 #include "tests/ui/support/window_fixture.h"
 #include "ui/models/parameter_model.h"
@@ -37,6 +38,9 @@ std::string timeless(const ProjectSnapshot& snapshot) {
     out << link.fixed << "-" << link.moving << " " << text(link.fixed_from_moving) << link.iterations << " "
         << link.correspondences << " " << text(link.rms_m) << " " << text(link.overlap) << " "
         << link.stop_reason << link.succeeded << linkOriginName(link.origin) << linkStateName(link.state);
+    if (link.judgement)
+      out << " " << verdictName(link.judgement->verdict) << " " << link.judgement->reason << " "
+          << text(link.judgement->residual_m) << " " << text(link.judgement->moved.translation_m);
     if (link.information)
       for (int i = 0; i < 36; ++i) out << " " << text(link.information->data()[i]);
     out << "\n";

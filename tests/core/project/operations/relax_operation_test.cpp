@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/project/job.h"
+#include "core/project/link_judgement.h"
 #include "core/project/operation.h"
 #include "core/project/project.h"
 #include "tests/support/program.h"
@@ -52,7 +53,17 @@ TEST_F(RelaxOperationTest, MakesTheRelaxedStageAndLinksBeyondNeighbours) {
   // 0-1, 1-2, 2-3 were there; nobody's link is there twice.
   EXPECT_GT(snapshot->links().size(), 3U);
   EXPECT_LE(snapshot->links().size(), 6U);
-  for (const Link& link : snapshot->links()) EXPECT_EQ(link.origin, LinkOrigin::Automatic);
+  for (const Link& link : snapshot->links()) {
+    EXPECT_EQ(link.origin, LinkOrigin::Automatic);
+    // What was found on the way is judged like what was registered: by the scans, at the link's own pose.
+    ASSERT_TRUE(link.judgement) << link.fixed << " - " << link.moving;
+    EXPECT_EQ(link.judgement->verdict, Verdict::Good) << link.judgement->reason;
+    EXPECT_GT(link.judgement->overlap(), 0.1);
+  }
+  const auto judged = judgeLinkScans(*snapshot);
+  ASSERT_TRUE(judged);
+  for (const JudgedLink& one : *judged)
+    EXPECT_EQ(one.judgement.residual_m, snapshot->findLink(one.link)->judgement->residual_m);
 
   const auto report = nlohmann::json::parse(result->report_json);
   EXPECT_GT(report["milliseconds"].get<double>(), 0.0);
