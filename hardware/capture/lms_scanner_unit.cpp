@@ -18,8 +18,10 @@ constexpr double kByteGapS = 0.06;
 // Telegrams whose beginnings are remembered: long enough ago, and the mirror may have drifted.
 constexpr std::size_t kRecent = 8;
 // Before so many have come nobody can tell whether one was held back on its way, by an adapter or by a
-// machine that was busy: they set the rhythm and are not told.
+// machine that was busy: they set the rhythm and are not told. More where they come so quickly that an
+// adapter's usual delay (16 ms) could pass for some of them.
 constexpr std::size_t kRhythm = 2;
+constexpr Duration kUsualDelay = std::chrono::milliseconds(20);
 // So many parts of a period the best guess of a whole telegram may be late by, and the rhythm still be
 // counted right; the first bytes of the one under way may be late by the rest of it.
 constexpr int kLateParts = 4;
@@ -112,9 +114,15 @@ LineTimes LmsScannerUnit::timesOf(std::size_t bytes_here) {
   const Duration scan = durationOf(kTurnS * scanner_.variant().turns());
   const Duration period = durationOf(scanner_.streamPeriod());
   began_ = std::min(began_, last_byte_ - channel_->line().wireTime(bytes_here));
-  // After a pause nobody knows whether a telegram was measured now or lay somewhere meanwhile: the rhythm has
-  // to be found anew, and until then no line is believed.
-  if (!recent_.empty() && began_ - recent_.back() > period + period / 2) recent_.clear();
+  // After a pause nobody knows whether a telegram was measured now or lay somewhere meanwhile, and those that
+  // come sooner one after the other than they can have been measured surely did: the rhythm has to be found
+  // anew, and until then no line is believed.
+  if (!recent_.empty()) {
+    const Duration measured = period * static_cast<Duration::rep>(recent_.size());
+    const bool paused = began_ - recent_.back() > period + period / 2;
+    const bool heaped = began_ - recent_.front() < measured - std::max(period / kLateParts, kUsualDelay);
+    if (paused || heaped) recent_.clear();
+  }
   // Telegrams begin in an even rhythm: what earlier ones tell of it holds for this one, whose own first bytes
   // may have been held back by an adapter or by a machine that was busy.
   Instant began = began_;
@@ -123,6 +131,11 @@ LineTimes LmsScannerUnit::timesOf(std::size_t bytes_here) {
     began = std::min(began, earlier + periods * period);
   }
   return {began - scan - durationOf(settings_.latency_s), began};
+}
+
+bool LmsScannerUnit::hasRhythm() const {
+  return recent_.size() >= kRhythm &&
+         durationOf(scanner_.streamPeriod()) * static_cast<Duration::rep>(recent_.size()) >= 2 * kUsualDelay;
 }
 
 // When the bytes that seemed to begin a telegram turn out to begin none, neither did it begin then.
@@ -147,7 +160,7 @@ Result<std::optional<ScannerEvent>> LmsScannerUnit::whole(const Telegram& telegr
   if (telegram.command() != kScanAnswer) return std::nullopt;  // late, of an earlier request
   const LineTimes times = timesOf(telegram.wireSize());
   const bool announced = std::exchange(told_, false);
-  const bool in_rhythm = recent_.size() >= kRhythm;
+  const bool in_rhythm = hasRhythm();
   recent_.push_back(began_);
   if (recent_.size() > kRecent) recent_.erase(recent_.begin());
   began_ = kNever;
@@ -177,7 +190,7 @@ std::optional<ScannerEvent> LmsScannerUnit::beginning() {
   const auto start = framer_.start();
   // Every byte tells when it began, the first one best of all: a pause may follow it.
   const LineTimes times = timesOf(start.size());
-  if (recent_.size() < kRhythm) return std::nullopt;
+  if (!hasRhythm()) return std::nullopt;
   if (start.size() < 5 || told_ || start[4] != kScanAnswer || word(start, 2) + kOverhead != telegram_size_)
     return std::nullopt;
   told_ = true;
@@ -219,7 +232,10 @@ std::vector<InstrumentFact> LmsScannerUnit::facts() const {
   const UnitStatus& status = report.status;
   // The window's sensors against the clean reference ones, which the unit itself judges.
   std::string dirt;
-  for (const int value : status.pollution) dirt += (dirt.empty() ? "" : " ") + std::to_string(value);
+  for (const int value : status.pollution) {
+    if (!dirt.empty()) dirt += ' ';
+    dirt += std::to_string(value);
+  }
   const bool dirty_then = std::ranges::any_of(
       report.warnings, [](const std::string& text) { return text.find("dirty") != std::string::npos; });
   // Each line says how the unit is by now.

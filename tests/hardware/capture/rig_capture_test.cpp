@@ -99,6 +99,40 @@ TEST_F(RigCaptureTest, BytesInHeapsDoNotMakeTheTiltLeaveTooEarly) {
   expectTrueLines();
 }
 
+// A scanner that falls silent for a moment and then tells in one heap what it measured meanwhile, as behind an
+// adapter that stood still: the tilt has moved on since.
+TEST_F(RigCaptureTest, WhatLaySomewhereForAWhileIsNotBelieved) {
+  class Pauses : public Actor {
+   public:
+    Pauses(Clock& clock, EmulatedBench& bench) : bench_(bench), next_(clock.now() + durationOf(3.0)) {}
+    Instant nextEvent() const override { return next_; }
+    void act(Instant now) override {
+      EXPECT_TRUE(bench_.fault(silent_ ? "none" : "silent"));
+      silent_ = !silent_;
+      next_ = now + durationOf(silent_ ? random_.uniform(0.2, 2.0) : random_.uniform(0.5, 3.0));
+      ++count_;
+    }
+    int count() const { return count_; }
+
+   private:
+    EmulatedBench& bench_;
+    RandomStream random_{7};
+    Instant next_;
+    bool silent_ = false;
+    int count_ = 0;
+  };
+  make(101);
+  auto& clock = dynamic_cast<VirtualClock&>(bench_->clock());
+  Pauses pauses(clock, *bench_);
+  clock.attach(pauses);
+  const auto report = run();
+  clock.detach(pauses);
+  ASSERT_TRUE(report) << report.error().what;
+  EXPECT_EQ(report->taken, 101);
+  EXPECT_GT(pauses.count(), 20);
+  expectTrueLines();
+}
+
 TEST_F(RigCaptureTest, TheSameTwiceIsTheSame) {
   make(6);
   ASSERT_TRUE(run());

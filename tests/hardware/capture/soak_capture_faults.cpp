@@ -3,6 +3,7 @@
 // missing must be missing, and when an interrupted scan is gone on with it has to become whole.
 //
 //   SCANS=1000 LINES=101 SEED=1 soak_capture_faults      (default: 1000 scans of 101 lines)
+//   FIRST=560 SCANS=571 soak_capture_faults              a part of it again, from a multiple of 20 on
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -146,12 +147,14 @@ int soak() {
   const auto seed = static_cast<std::uint64_t>(wished("SEED", 1));
   const test::TemporaryFolder folder;
   constexpr int kScansAProject = 20;  // keeps the file small; each with another site
+  const int first = wished("FIRST", 0) / kScansAProject * kScansAProject;
   Tally tally;
+  tally.scans = first;
   std::map<std::string, int> thrown;
   std::unique_ptr<Project> project;
   std::unique_ptr<EmulatedBench> bench;
   std::unique_ptr<Mischief> mischief;
-  for (int i = 0; i < scans; ++i) {
+  for (int i = first; i < scans; ++i) {
     if (i % kScansAProject == 0) {
       if (bench) dynamic_cast<VirtualClock&>(bench->clock()).detach(*mischief);
       if (mischief)
@@ -175,7 +178,7 @@ int soak() {
   std::printf(
       "%d scans, %d lines stored, %d wrong, %d scans unfinished; %d times gone on, %d lines taken again, "
       "%d instruments found again\nfaults:",
-      tally.scans, tally.lines, tally.wrong, tally.unfinished, tally.resumed, tally.spoiled,
+      tally.scans - first, tally.lines, tally.wrong, tally.unfinished, tally.resumed, tally.spoiled,
       tally.recoveries);
   for (const auto& [name, count] : thrown) std::printf(" %s %d", name.c_str(), count);
   std::printf("\n");
