@@ -211,6 +211,8 @@ bool Registration::canRefine() const {
 std::optional<StopReason> Registration::refineStep(StepReport& report) {
   ++refinements_;
   report.refining = true;
+  // Those of the last step that looked for pairs.
+  for (const Correspondence& pair : pairs_) ++report.rejected[static_cast<std::size_t>(pair.reason)];
   report.pairs = kept_;
   report.loss = loss_;
   report.error_m2 = error_m2_;

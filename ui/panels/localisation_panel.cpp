@@ -51,6 +51,8 @@ LocalisationPanel::LocalisationPanel(const PanelContext& context, QWidget* paren
   stage_->setAccessibleName("Stage of the poses");
   stage_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
   stage_->setToolTip("Whose poses: the stage places the scans in all views");
+  // It wraps: in one line it would take from the panels beside.
+  summary_->setWordWrap(true);
   summary_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   copy_->setObjectName("localisation-copy");
   export_->setObjectName("localisation-export");

@@ -126,6 +126,7 @@ TEST_F(TwoViews, ARegistrationEndsWithItAndSaysSo) {
     EXPECT_TRUE(last.refining || refining == 0) << "patches are not paired again";
     refining += last.refining ? 1 : 0;
     EXPECT_EQ(last.cells > 0.0, last.refining);
+    EXPECT_EQ(last.rejected[static_cast<std::size_t>(RejectReason::None)], last.pairs);
   }
   EXPECT_TRUE(isSuccess(*registration.stopReason()));
   EXPECT_TRUE(last.refining);
