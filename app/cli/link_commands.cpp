@@ -137,7 +137,7 @@ int askWhatIf(Context& context, const LinkWords& words) {
 std::string addedText(const nlohmann::json& report) {
   char line[160];
   std::snprintf(line, sizeof line,
-                "linked %d to %d: overlap %.0f %%, rms %.2f mm, %.1f mm and %.3f deg from the start\n%s: ",
+                "linked %d to %d: %.0f %% matched, rms %.2f mm, %.1f mm and %.3f deg from the start\n%s: ",
                 report["moving"].get<int>(), report["fixed"].get<int>(),
                 100.0 * report["overlap"].get<double>(), 1000.0 * report["rms_m"].get<double>(),
                 1000.0 * report["moved_m"].get<double>(), report["moved_deg"].get<double>(),

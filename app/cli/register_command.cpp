@@ -11,7 +11,7 @@ namespace tiltmap::cli {
 namespace {
 
 std::string pairTable(const nlohmann::json& report) {
-  std::string text = "fixed  moving  overlap   rms mm   pairs  steps     ms  ended\n";
+  std::string text = "fixed  moving  matched   rms mm   pairs  steps     ms  ended\n";
   for (const auto& pair : report["pairs"]) {
     char line[160];
     std::snprintf(line, sizeof line, "%5d  %6d  %5.0f %%  %7.2f  %6d  %5d  %5.1f  %s\n",

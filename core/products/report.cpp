@@ -202,9 +202,9 @@ std::string pairsHtml(const std::vector<ReportPair>& pairs) {
   if (pairs.empty()) return "";
   HtmlTable table({{"Fixed", ""},
                    {"Moving", ""},
-                   {"Overlap", "%"},
+                   {"Matched", "%"},
                    {"RMS distance", "mm"},
-                   {"Point pairs", ""},
+                   {"Correspondences", ""},
                    {"Iterations", ""},
                    {"Stopped because", "", false},
                    {"Time", "ms"}});

@@ -52,8 +52,8 @@ QString linkTip(const ProjectSnapshot& snapshot, const Link& link, LengthUnit un
   tip += row("Result", link.succeeded ? QString("found") : QString("not found"));
   tip += row("Ended because", qt(link.stop_reason));
   tip += row("Residual (rms)", smallLengthText(link.rms_m, unit));
-  tip += row("Overlap", percent(link.overlap));
-  tip += row("Pairs of points", groupedNumber(link.correspondences));
+  tip += row("Matched", percent(link.overlap));
+  tip += row("Correspondences", groupedNumber(link.correspondences));
   tip += row("Iterations", QString::number(link.iterations));
   tip += row("Origin", qt(linkOriginName(link.origin)));
   tip += row("State", qt(linkStateName(link.state)));

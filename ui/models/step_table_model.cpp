@@ -20,7 +20,7 @@ constexpr Heading kHeadings[] = {
     {"Scale (mm)", "Of the loss; in the end what is added to the patches' own deviation"},
     {"Shift (mm)", "How far the step moved the scan"},
     {"Turn (deg)", "How far the step turned the scan"},
-    {"Overlap (%)", "Share of the moving scan in the common field that fits"},
+    {"Matched (%)", "Share of the moving scan's elements in reach of the fixed scan that fit it"},
     {"Agree (%)", "Share of the kept pairs within three deviations"}};
 
 }  // namespace

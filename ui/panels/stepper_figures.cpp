@@ -55,7 +55,8 @@ QWidget* StepperFigures::buildNumbers() {
             "Root mean square of the kept pairs' residuals before the step, weighted by the loss");
   addNumber(grid, "change", "Change", "Of the mean squared residual against the step before");
   addNumber(grid, "pairs", "Pairs kept", "Pairs used for the motion, of all that were sought");
-  addNumber(grid, "overlap", "Overlap", "Share of the moving scan in the common field that fits");
+  addNumber(grid, "overlap", "Matched",
+            "Share of the moving scan's elements in reach of the fixed scan that fit it");
   addNumber(grid, "agreement", "Agreement", "Share of the kept pairs within three deviations");
   addNumber(grid, "elements", "Elements", "What is paired: points or plane patches of both scans");
   addNumber(grid, "step", "This step", "How far it moved and turned the moving scan");
