@@ -4,7 +4,7 @@
 
 namespace tiltmap {
 
-PatchRaster::PatchRaster() : cell_(static_cast<std::size_t>(kRows) * kColumns, kNone) {}
+PatchRaster::PatchRaster() : cell_(static_cast<std::size_t>(kRows + 2 * kBorder) * kStride, kNone) {}
 
 bool PatchRaster::place(const Eigen::Vector3d& p, std::int32_t& index) {
   const double square = p.squaredNorm();
@@ -15,23 +15,16 @@ bool PatchRaster::place(const Eigen::Vector3d& p, std::int32_t& index) {
 
 void PatchRaster::paint(const Eigen::Vector3d& p, std::uint32_t patch) {
   std::int32_t index = 0;
-  if (place(p, index)) cell_[static_cast<std::size_t>(index)] = patch;
+  if (place(p, index)) paintAt(index, patch);
 }
 
 void PatchRaster::closeGaps() {
-  // A copy with a border of empty cells at both ends of a row; rows go all round.
-  constexpr std::size_t kColumnsWithBorder = static_cast<std::size_t>(kColumns) + 2;
   static thread_local std::vector<std::uint32_t> copy;  // fresh memory costs more than what is done there
-  copy.assign(kColumnsWithBorder * (static_cast<std::size_t>(kRows) + 2), kNone);
-  const auto rowOf = [&](int row) {
-    return copy.data() + static_cast<std::size_t>(row + 1) * kColumnsWithBorder;
-  };
-  for (int row = -1; row <= kRows; ++row)
-    std::copy_n(cell_.begin() + static_cast<std::ptrdiff_t>((row + kRows) % kRows * kColumns), kColumns,
-                rowOf(row) + 1);
-  for (int row = 0; row < kRows; ++row) {
-    const std::uint32_t *above = rowOf(row - 1) + 1, *here = rowOf(row) + 1, *under = rowOf(row + 1) + 1;
-    std::uint32_t* out = cell_.data() + static_cast<std::size_t>(row) * kColumns;
+  copy = cell_;
+  for (int row = kBorder; row < kRows + kBorder; ++row) {
+    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(row) * kStride + kBorder;
+    const std::uint32_t *here = copy.data() + first, *above = here - kStride, *under = here + kStride;
+    std::uint32_t* out = cell_.data() + first;
     for (std::ptrdiff_t k = 0; k < kColumns; ++k) {
       // The first that is painted of these; without branches.
       std::uint32_t patch = here[k + 1];
@@ -41,6 +34,10 @@ void PatchRaster::closeGaps() {
       out[k] = here[k] != kNone ? here[k] : patch;
     }
   }
+  const auto begin = cell_.begin();
+  constexpr std::ptrdiff_t kBorders = static_cast<std::ptrdiff_t>(kBorder) * kStride;
+  std::copy_n(begin + kAllRound, kBorders, begin);
+  std::copy_n(begin + kBorders, kBorders, begin + kAllRound + kBorders);
 }
 
 }  // namespace tiltmap

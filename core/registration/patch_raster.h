@@ -1,6 +1,7 @@
 // Which plane patch is seen in which direction from the scanner: one look-up instead of a search.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -19,9 +20,16 @@ class PatchRaster {
 
   // `patch` is seen in the direction of `p` (scan frame). The last one painted stays.
   void paint(const Eigen::Vector3d& p, std::uint32_t patch);
-  void paintAt(std::int32_t index, std::uint32_t patch) { cell_[static_cast<std::size_t>(index)] = patch; }
+  void paintAt(std::int32_t index, std::uint32_t patch) {
+    cell_[static_cast<std::size_t>(index)] = patch;
+    if (index < (kBorder + kBorder) * kStride) cell_[static_cast<std::size_t>(index + kAllRound)] = patch;
+    if (index >= kAllRound) cell_[static_cast<std::size_t>(index - kAllRound)] = patch;
+  }
   // Gives each empty cell what a painted neighbour holds, so that beams between two tiles are no gaps.
   void closeGaps();
+
+  // From an index to its four neighbours: the lines before and after, then along the line.
+  static constexpr std::array<std::int32_t, 4> kAround = {-126, 126, -1, 1};
 
   // Where the direction of (x, y, z) lies in the raster; no place at the origin or beyond 1e9 m is asked for.
   // Without branches and tables, so that many are computed side by side.
@@ -30,12 +38,15 @@ class PatchRaster {
     const float from_axis = arcCosine(x / range);
     const auto column = static_cast<std::int32_t>(from_axis * (static_cast<float>(kColumns) / kPiF));
     const auto row = static_cast<std::int32_t>(fullTurn(y, z) * static_cast<float>(kRows));
-    return (row < kRows ? row : kRows - 1) * kColumns + (column < kColumns ? column : kColumns - 1);
+    return ((row < kRows ? row : kRows - 1) + kBorder) * kStride +
+           (column < kColumns ? column : kColumns - 1) + kBorder;
   }
   std::uint32_t at(std::int32_t index) const { return cell_[static_cast<std::size_t>(index)]; }
+  // What `at` reads from. An index has the neighbours index + kAround[.], kNone where there are none.
+  const std::uint32_t* data() const { return cell_.data(); }
 
   // Calls visit(patch) for what lies in the direction of `p` and around it, at most nine times, never twice
-  // the same in a row, until it returns false. `reach` in cells of 1.5 deg.
+  // the same in a row, until it returns false. `reach` in cells of 1.5 deg, at most 3.
   template <class Visit>
   void around(const Eigen::Vector3d& p, int reach, Visit&& visit) const {
     std::int32_t index = 0;
@@ -43,26 +54,27 @@ class PatchRaster {
   }
   template <class Visit>
   void aroundIndex(std::int32_t index, int reach, Visit&& visit) const {
-    const int row = index / kColumns, column = index - row * kColumns;
     std::uint32_t last = kNone;
-    const auto goOn = [&](int r, int c) {
-      if (c < 0 || c >= kColumns) return true;
-      r = r < 0 ? r + kRows : (r >= kRows ? r - kRows : r);
-      const std::uint32_t patch = cell_[static_cast<std::size_t>(r * kColumns + c)];
+    const auto goOn = [&](std::int32_t at) {
+      const std::uint32_t patch = cell_[static_cast<std::size_t>(at)];
       if (patch == kNone || patch == last) return true;
       last = patch;
       return static_cast<bool>(visit(patch));
     };
-    if (!goOn(row, column)) return;
+    if (!goOn(index)) return;
     for (int d = 1; d <= reach; d += 2)
-      if (!goOn(row - d, column) || !goOn(row + d, column) || !goOn(row, column - d) ||
-          !goOn(row, column + d))
-        return;
+      for (const std::int32_t neighbour : kAround)
+        if (!goOn(index + d * neighbour)) return;
   }
 
  private:
   static constexpr int kRows = 240;     // about the x axis, 1.5 deg each, all round
   static constexpr int kColumns = 120;  // from the x axis, 1.5 deg each
+  // Cells around it, so that neighbours need no special case: beyond the last rows the first ones again,
+  // beside the columns nothing.
+  static constexpr int kBorder = 3;
+  static constexpr int kStride = kColumns + 2 * kBorder;
+  static constexpr int kAllRound = kRows * kStride;
   static constexpr float kPiF = 3.14159265F;
 
   // Abramowitz and Stegun 4.4.45 (within 7e-5 rad).
@@ -88,6 +100,8 @@ class PatchRaster {
     return turn < 1.0F ? turn : 0.0F;
   }
   static bool place(const Eigen::Vector3d& p, std::int32_t& index);
+
+  static_assert(kAround[1] == kStride && kAround[0] == -kStride);
 
   std::vector<std::uint32_t> cell_;
 };
