@@ -1,9 +1,11 @@
 #include "core/registration/cell_refinement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
+#include "core/registration/cells_at_patches.h"
 #include "core/registration/moved_cells.h"
 #include "core/registration/normal_equations.h"
 
@@ -13,7 +15,6 @@ namespace {
 
 constexpr float kCellFloor_m = 0.0015F;  // no mean of cells is known better
 constexpr float kGate = 16.0F;           // four deviations, squared
-constexpr float kMostShort_m = 0.1F;     // that a slanted surface's range is
 constexpr float kOutside_m = 0.15F;      // of its outline, a cell still lies on a patch
 constexpr double kFewestCells = 1.0;
 constexpr int kMostMotions = 4;
@@ -33,19 +34,22 @@ class Binning {
         raster_(*patches.raster),
         pose_(patches_from_cells),
         motion_(patches_from_cells),
-        noise_square_(static_cast<float>(settings.patch_noise_m * settings.patch_noise_m)),
-        excess_square_(static_cast<float>(excess_m * excess_m)),
-        spot_square_(static_cast<float>(cells.spot_rad * cells.spot_rad)),
-        most_square_(2.0F * (kGate * (noise_square_ + kCellFloor_m * kCellFloor_m + excess_square_) +
-                             kMostShort_m * kMostShort_m)),
-        bins_(patches.discs.size()) {}
+        bins_(patches.discs.size()) {
+    rule_.noise_square = static_cast<float>(settings.patch_noise_m * settings.patch_noise_m);
+    rule_.floor_square = kCellFloor_m * kCellFloor_m;
+    rule_.excess_square = static_cast<float>(excess_m * excess_m);
+    rule_.spot_square = static_cast<float>(cells.spot_rad * cells.spot_rad);
+    rule_.gate_square = kGate;
+    rule_.outside_m = kOutside_m;
+    rule_.origin = {motion_.m[9], motion_.m[10], motion_.m[11]};
+  }
 
   void add(const CellSamples& cells) {
     MovedCells moved;
     for (std::size_t begin = 0; begin < cells.size(); begin += MovedCells::kMost) {
       const std::size_t count = std::min(MovedCells::kMost, cells.size() - begin);
       moveCells(cells, begin, count, motion_, moved);
-      for (std::size_t i = 0; i < count; ++i) give(cells, begin + i, moved, i);
+      give(cells, begin, moved, count);
     }
   }
 
@@ -71,38 +75,69 @@ class Binning {
   }
 
  private:
-  void give(const CellSamples& cells, std::size_t cell, const MovedCells& moved, std::size_t i) {
-    const float x = moved.x[i], y = moved.y[i], z = moved.z[i];
-    if (!(x * x + y * y + z * z > 1e-12F)) return;
-    const float n = cells.count[cell];
-    const float ray_x = x - motion_.m[9], ray_y = y - motion_.m[10], ray_z = z - motion_.m[11];
-    const float range_square = ray_x * ray_x + ray_y * ray_y + ray_z * ray_z;
-    raster_.aroundIndex(moved.place[i], 1, [&](std::uint32_t patch) {
-      const PatchDisc& disc = discs_[patch];
-      const float dx = x - disc.x, dy = y - disc.y, dz = z - disc.z;
-      // Most of what is on another surface is told by this alone.
-      const float across = dx * disc.nx + dy * disc.ny + dz * disc.nz;
-      if (across * across > most_square_ + 2.0F * kGate * disc.offset_variance) return true;
-      const float u = std::abs(dx * disc.ux + dy * disc.uy + dz * disc.uz);
-      const float v = std::abs(dx * disc.vx + dy * disc.vy + dz * disc.vz);
-      if (u > disc.reach_u + kOutside_m || v > disc.reach_v + kOutside_m) return true;
-      const float towards = ray_x * disc.nx + ray_y * disc.ny + ray_z * disc.nz;
-      if (!(towards < 0.0F)) return true;
-      const float cos_square = towards * towards / range_square;
-      const float variance = noise_square_ * cos_square + kCellFloor_m * kCellFloor_m;
-      // How much too short a slanted surface's range is (see shortRange), as a share of it.
-      const float share = spot_square_ > 0.0F ? spot_square_ * (1.0F - cos_square) / cos_square : 0.0F;
-      const float off = across + share * towards;
-      if (off * off > kGate * (variance / n + excess_square_ + disc.offset_variance)) return true;
-      Bin& bin = bins_[patch];
-      const double w = static_cast<double>(n) * (1.0 + static_cast<double>(share));
-      bin.x += w * static_cast<double>(cells.x[cell]);
-      bin.y += w * static_cast<double>(cells.y[cell]);
-      bin.z += w * static_cast<double>(cells.z[cell]);
-      bin.count += static_cast<double>(n);
-      bin.variance += static_cast<double>(n * variance);
-      return false;
-    });
+  // First to the patch in a cell's own direction, then, where it does not lie there, to those around.
+  void give(const CellSamples& cells, std::size_t begin, const MovedCells& moved, std::size_t count) {
+    const std::uint32_t* raster = raster_.data();
+    std::size_t open = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      // The first that is painted; without branches.
+      const std::uint32_t* here = raster + moved.place[i];
+      std::uint32_t patch = here[PatchRaster::kAround[3]];
+      for (const std::size_t before : {2U, 1U, 0U}) {
+        const std::uint32_t other = here[PatchRaster::kAround[before]];
+        patch = other != PatchRaster::kNone ? other : patch;
+      }
+      patch = here[0] != PatchRaster::kNone ? here[0] : patch;
+      cell_[open] = static_cast<std::uint32_t>(i), last_[open] = patch;
+      open += patch != PatchRaster::kNone ? 1 : 0;
+    }
+    test(cells, begin, moved, open, [&](std::size_t k) { return last_[k]; });
+    for (const std::int32_t neighbour : PatchRaster::kAround)
+      test(cells, begin, moved, open, [&](std::size_t k) {
+        const std::uint32_t patch = raster[moved.place[cell_[k]] + neighbour];
+        const std::uint32_t fresh = patch == last_[k] ? PatchRaster::kNone : patch;
+        last_[k] = patch == PatchRaster::kNone ? last_[k] : patch;
+        return fresh;
+      });
+  }
+
+  // Holds the open cells against a patch each, and closes those that lie on it.
+  template <class PatchOf>
+  void test(const CellSamples& cells, std::size_t begin, const MovedCells& moved, std::size_t& open,
+            PatchOf&& patch_of) {
+    std::size_t held = 0;
+    for (std::size_t k = 0; k < open; ++k) {
+      const std::uint32_t patch = patch_of(k), i = cell_[k];
+      at_.x[held] = moved.x[i], at_.y[held] = moved.y[i], at_.z[held] = moved.z[i];
+      at_.count[held] = cells.count[begin + i];
+      at_.patch[held] = static_cast<std::int32_t>(patch);
+      held_[held] = static_cast<std::uint32_t>(k);
+      held += patch != PatchRaster::kNone ? 1 : 0;
+    }
+    testCells(discs_.data(), held, rule_, at_);
+    for (std::size_t h = 0; h < held; ++h) {
+      if (!(at_.lies[h] > 0.0F)) continue;
+      std::uint32_t& i = cell_[held_[h]];
+      lay(cells, begin + i, static_cast<std::size_t>(at_.patch[h]), at_.share[h], at_.variance[h]);
+      i = kLaid;
+    }
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < open; ++k) {
+      cell_[left] = cell_[k], last_[left] = last_[k];
+      left += cell_[k] != kLaid ? 1 : 0;
+    }
+    open = left;
+  }
+
+  void lay(const CellSamples& cells, std::size_t cell, std::size_t patch, float share, float variance) {
+    Bin& bin = bins_[patch];
+    const auto n = static_cast<double>(cells.count[cell]);
+    const double w = n * (1.0 + static_cast<double>(share));
+    bin.x += w * static_cast<double>(cells.x[cell]);
+    bin.y += w * static_cast<double>(cells.y[cell]);
+    bin.z += w * static_cast<double>(cells.z[cell]);
+    bin.count += n;
+    bin.variance += n * static_cast<double>(variance);
   }
 
   const SurfaceElements& elements_;
@@ -110,9 +145,14 @@ class Binning {
   const PatchRaster& raster_;
   Pose pose_;
   FloatPose motion_;
-  float noise_square_, excess_square_, spot_square_;
-  float most_square_;  // across, whatever the incidence, but for the patch's own variance
+  CellRule rule_;
   std::vector<Bin> bins_;
+  // Of the cells at work that lie on no patch yet.
+  static constexpr std::uint32_t kLaid = 0xffffffffU;
+  std::array<std::uint32_t, MovedCells::kMost> cell_;  // from the first at work
+  std::array<std::uint32_t, MovedCells::kMost> last_;  // the patch it was held against
+  std::array<std::uint32_t, MovedCells::kMost> held_;
+  CellsAtPatches at_;
 };
 
 bool canRefine(const PreparedScan& fixed, const PreparedScan& moving) {

@@ -184,33 +184,12 @@ class RegularTiles {
         continue;
       }
       for (std::size_t line = 0; line < planes_.size(); ++line)
-        sampleLine(line, line * stride_ + first, whole_below_m, samples);
+        for (std::size_t k = line * stride_ + first; k < line * stride_ + first + tile_columns_; ++k)
+          if (scratch_.used[k] > 0.0F) samples.add(pointOf(line, k), 1.0);
     }
   }
 
  private:
-  // Of one line of a tile that is not one: on ground seen at a slant the lines lie far apart, the cells of
-  // each do not.
-  void sampleLine(std::size_t line, std::size_t begin, double whole_below_m, CellSamples& samples) const {
-    const std::size_t end = begin + tile_columns_;
-    double n = 0.0, square = 0.0;
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // of points, or of (across, ahead)
-    for (std::size_t k = begin; k < end; ++k) {
-      if (!(scratch_.used[k] > 0.0F)) continue;
-      const Eigen::Vector3d p =
-          tilts_ ? points_[k] : Eigen::Vector3d(scratch_.across[k], scratch_.ahead[k], 0.0);
-      n += 1.0, sum += p, square += p.squaredNorm();
-    }
-    if (!(n > 0.0)) return;
-    if (square * n - sum.squaredNorm() < n * n * whole_below_m * whole_below_m) {
-      const Eigen::Vector3d mean = sum / n;
-      samples.add(tilts_ ? mean : planes_[line].point(mean.x(), mean.y()), n);
-      return;
-    }
-    for (std::size_t k = begin; k < end; ++k)
-      if (scratch_.used[k] > 0.0F) samples.add(pointOf(line, k), 1.0);
-  }
-
   // Of the cell at `k` of the lines of these tiles.
   Eigen::Vector3d pointOf(std::size_t line, std::size_t k) const {
     return tilts_ ? points_[k] : planes_[line].point(scratch_.across[k], scratch_.ahead[k]);

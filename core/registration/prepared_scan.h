@@ -8,6 +8,7 @@
 
 #include "core/registration/cell_samples.h"
 #include "core/registration/direction_index.h"
+#include "core/registration/patch_disc.h"
 #include "core/registration/patch_raster.h"
 #include "core/registration/registration_settings.h"
 #include "core/registration/surface_elements.h"
@@ -15,14 +16,6 @@
 #include "core/scan/range_image.h"
 
 namespace tiltmap {
-
-// A patch in the form that is looked at most often, one a cache line. Scan frame, m; see PatchShape.
-struct alignas(64) PatchDisc {
-  float x = 0.0F, y = 0.0F, z = 0.0F, nx = 0.0F, ny = 0.0F, nz = 0.0F;
-  float ux = 0.0F, uy = 0.0F, uz = 0.0F, vx = 0.0F, vy = 0.0F, vz = 0.0F;
-  float reach_u = 0.0F, reach_v = 0.0F;  // from the centre to the edge
-  float offset_variance = 0.0F;          // m^2
-};
 
 // Immutable. Holds what the settings' components ask for: the tree for the pair choices that search one, the
 // directions for the projective one. Empty elements are possible (a scan without a point) and mean no
