@@ -211,7 +211,7 @@ void lineariseCells(const Pose& fixed_from_moving, const std::vector<CellsOnPatc
 }
 
 Refined refined(const PreparedScan& fixed, const PreparedScan& moving, const Pose& fixed_from_moving,
-                double excess_m, const RegistrationSettings& settings) {
+                double excess_m, const RegistrationSettings& settings, bool strictly) {
   Refined result;
   result.fixed_from_moving = fixed_from_moving;
   const std::vector<CellsOnPatch> cells =
@@ -221,7 +221,9 @@ Refined refined(const PreparedScan& fixed, const PreparedScan& moving, const Pos
   for (int motion = 0; motion < kMostMotions; ++motion) {
     result.system = {};
     lineariseCells(result.fixed_from_moving, cells, excess_m, settings.refine_deviations, result.system);
-    const Vector6d step = solvedStep(result.system, conditioningOf(result.system, settings.min_eigenvalue));
+    const Conditioning condition = conditioningOf(result.system, settings.min_eigenvalue);
+    const Vector6d step =
+        strictly ? solvedStep(result.system, condition) : solvedStepOnTheWay(result.system, condition);
     result.fixed_from_moving = result.fixed_from_moving.moved(step);
     if (step.head<3>().norm() < settings.min_rotation_rad &&
         step.tail<3>().norm() < settings.min_translation_m)

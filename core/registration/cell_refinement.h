@@ -56,8 +56,9 @@ struct Refined {
   LinearSystem system;  // at the pose
 };
 
-// Gives the cells to the patches once, and moves until that is settled.
+// Gives the cells to the patches once, and moves until that is settled: in all directions that are not free,
+// or, `strictly`, not weak (Conditioning).
 Refined refined(const PreparedScan& fixed, const PreparedScan& moving, const Pose& fixed_from_moving,
-                double excess_m, const RegistrationSettings& settings);
+                double excess_m, const RegistrationSettings& settings, bool strictly = true);
 
 }  // namespace tiltmap

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kNoiseFactor =
     3.0;  // an eigenvalue below so many times what noisy normals make of a plane is none
+constexpr double kFreeShare = 0.1;  // of the bound
 constexpr double kFittingPoint_m =
     0.5;  // points agree within this (the neighbour criterion of thesis chapter 6)
 
@@ -205,20 +206,34 @@ Conditioning conditioningOf(const LinearSystem& system, double weak_below) {
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(normalised);
   result.eigenvalues = solver.eigenvalues();
   result.directions = a * solver.eigenvectors();
-  result.weak = 0;
-  for (int i = 0; i < 6; ++i)
+  result.weak = result.free = 0;
+  for (int i = 0; i < 6; ++i) {
     if (!(result.eigenvalues[i] >= bound)) ++result.weak;
+    if (!(result.eigenvalues[i] >= kFreeShare * bound)) ++result.free;
+  }
   return result;
 }
 
-Vector6d solvedStep(const LinearSystem& system, const Conditioning& condition) {
-  // In the eigenvectors' coordinates h is diagonal: eigenvalue times the sum of weights.
+namespace {
+
+// In the eigenvectors' coordinates h is diagonal: eigenvalue times the sum of weights.
+Vector6d stepFrom(int first, const LinearSystem& system, const Conditioning& condition) {
   Vector6d step = Vector6d::Zero();
-  for (int i = condition.weak; i < 6; ++i) {
+  for (int i = first; i < 6; ++i) {
     const Vector6d direction = condition.directions.col(i);
     step -= direction * (direction.dot(system.b) / (condition.eigenvalues[i] * system.plane_weight));
   }
   return step;
+}
+
+}  // namespace
+
+Vector6d solvedStep(const LinearSystem& system, const Conditioning& condition) {
+  return stepFrom(condition.weak, system, condition);
+}
+
+Vector6d solvedStepOnTheWay(const LinearSystem& system, const Conditioning& condition) {
+  return stepFrom(condition.free, system, condition);
 }
 
 Result<Pose> closedFormStep(MotionMethod motion, const SurfaceElements& fixed, const SurfaceElements& moving,

@@ -79,11 +79,15 @@ struct Conditioning {
   Vector6d eigenvalues = Vector6d::Zero();  // ascending
   Matrix6d directions = Matrix6d::Zero();   // a column each: (rotation, translation) for Pose::moved
   int weak = 6;                             // how many lie below the bound
+  int free = 6;                             // how many of them below a tenth of it
 };
 Conditioning conditioningOf(const LinearSystem& system, double weak_below);
 
 // The step -h^-1 b within the directions that are not weak; zero where all are.
 Vector6d solvedStep(const LinearSystem& system, const Conditioning& condition);
+// The same within all that are not free: on the way, when pairs are still wrong or few, a direction that will
+// be held in the end may look weak, and would stay where it is for good.
+Vector6d solvedStepOnTheWay(const LinearSystem& system, const Conditioning& condition);
 
 // The closed forms: fixed_from_moving from the kept pairs, weighted by the loss. Error: too few pairs, or on
 // a line.

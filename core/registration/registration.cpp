@@ -122,10 +122,25 @@ Registration::Registration(PreparedScanPtr fixed, PreparedScanPtr moving, const 
     fixed_sample_ = sampledElements(fixed_->elements, settings_);
     wide_fixed_sample_ = everyNth(fixed_sample_, settings_.wide_step, kWideSample);
   }
+  begin();
+}
+
+void Registration::begin() {
+  rejection_ = {};
   rejection_.distance_bound_m = settings_.max_distance_m;
   loss_ = firstLossScale(settings_);
   if (settings_.loss == Loss::Annealed)
     own_scale_steps_left_ = settings_.refine && bothAreBlocks() ? kOwnScaleStepsToRefine : kOwnScaleSteps;
+}
+
+// What is known too badly shall stay as at the start.
+void Registration::beginAnewStrictly() {
+  strictly_ = true;
+  begun_at_ = iteration_;
+  refinements_ = -1;
+  error_m2_ = 0.0;
+  pose_ = start_;
+  begin();
 }
 
 StepReport Registration::step(const std::stop_token& stop) {
@@ -141,6 +156,11 @@ StepReport Registration::step(const std::stop_token& stop) {
   } else {
     findPairsOfStep(report);
     stop_ = advance(report);
+  }
+  moved_weakly_ = moved_weakly_ || (!strictly_ && condition_.free < condition_.weak);
+  if (stop_ == StopReason::Degenerate && moved_weakly_ && !strictly_) {
+    stop_.reset();
+    beginAnewStrictly();
   }
   report.fixed_from_moving = pose_;
   report.motion = pose_ * before.inverse();
@@ -181,7 +201,7 @@ std::optional<StopReason> Registration::advance(StepReport& report) {
     if (!found) return StopReason::Degenerate;
     pose_ = *found;
   } else {
-    pose_ = pose_.moved(solvedStep(system, condition_));
+    pose_ = pose_.moved(strictly_ ? solvedStep(system, condition_) : solvedStepOnTheWay(system, condition_));
   }
   const PoseDifference from_start = difference(start_, pose_);
   if (!pose_.isFinite() || from_start.translation_m > settings_.max_correction_m ||
@@ -217,7 +237,7 @@ std::optional<StopReason> Registration::refineStep(StepReport& report) {
   report.loss = loss_;
   report.error_m2 = error_m2_;
   report.rms_m = rms_m_;
-  const Refined found = refined(*fixed_, *moving_, pose_, loss_.scale_m, settings_);
+  const Refined found = refined(*fixed_, *moving_, pose_, loss_.scale_m, settings_, strictly_);
   report.cells = found.cells;
   if (found.patches < static_cast<std::size_t>(settings_.min_pairs)) {
     report.condition = condition_;
@@ -241,7 +261,7 @@ void Registration::measure(Metric metric, const LinearSystem& system, StepReport
   rms_m_ = std::sqrt(error_m2_);
   report.error_m2 = error_m2_;
   report.rms_m = rms_m_;
-  report.change = iteration_ == 1 ? 1.0 : std::abs(error_m2_ - last) / std::max(last, 1e-300);
+  report.change = iteration_ == begun_at_ + 1 ? 1.0 : std::abs(error_m2_ - last) / std::max(last, 1e-300);
   condition_ = conditioningOf(system, settings_.min_eigenvalue);
   report.condition = condition_;
   // Unit weights become an information through the residuals' own variance.
@@ -261,7 +281,7 @@ void Registration::updateLossScale() {
   if (!loss_.isOwn() && loss_.scale_m > settings_.loss_end_m) {
     // A start that is good already need not wait for the scale to come down.
     const double next = std::min(loss_.scale_m * settings_.loss_factor, settings_.loss_follow * typical);
-    loss_ = std::max(settings_.loss_end_m, iteration_ > 1 ? next : loss_.scale_m * settings_.loss_factor);
+    loss_ = std::max(settings_.loss_end_m, iteration_ > begun_at_ + 1 ? next : loss_.scale_m * settings_.loss_factor);
     return;
   }
   --own_scale_steps_left_;
@@ -274,7 +294,7 @@ void Registration::updateLossScale() {
 }
 
 std::optional<StopReason> Registration::limitReached() const {
-  if (iteration_ >= settings_.max_iterations) return verified(StopReason::IterationLimit);
+  if (iteration_ - begun_at_ >= settings_.max_iterations) return verified(StopReason::IterationLimit);
   return std::nullopt;
 }
 
@@ -282,7 +302,7 @@ std::optional<StopReason> Registration::endOfStep(const StepReport& report,
                                                   const PoseDifference& motion) const {
   if (motion.translation_m < settings_.min_translation_m && motion.rotation_rad < settings_.min_rotation_rad)
     return verified(StopReason::TinyMotion);
-  if (iteration_ > 1 && report.change < settings_.min_change) return verified(StopReason::Converged);
+  if (iteration_ > begun_at_ + 1 && report.change < settings_.min_change) return verified(StopReason::Converged);
   return limitReached();
 }
 

@@ -109,6 +109,8 @@ class Registration {
   std::optional<StopReason> refineStep(StepReport& report);
   std::optional<StopReason> endOfStep(const StepReport& report, const PoseDifference& motion) const;
   StopReason verified(StopReason reason) const;
+  void begin();
+  void beginAnewStrictly();
 
   PreparedScanPtr fixed_, moving_;
   RegistrationSettings settings_;
@@ -119,6 +121,10 @@ class Registration {
   RejectionState rejection_;
   Residuals residuals_;
   int iteration_ = 0;
+  int begun_at_ = 0;  // the iteration before the first, or before it began anew
+  // Weak directions are left where they are. Not so at first, until a result turns out to rest on one.
+  bool strictly_ = false;
+  bool moved_weakly_ = false;  // along a weak direction, since it began
   LossScale loss_;
   int own_scale_steps_left_ = 0;
   int refinements_ = -1;  // made so far; before the first one is due: -1
