@@ -9,11 +9,6 @@ namespace tiltmap {
 
 namespace {
 
-constexpr double kResidualFloor_m = 0.002;  // no surface measured by us is known better, ours
-constexpr double kOffsetFloor_m = 0.0005;
-constexpr double kPlaneFreedom = 3.0;
-constexpr double kLongestSpot_m = 2.0;  // from 2 s to 2 s; an LMS' pulse is some 2.5 m long
-
 constexpr int kNewtonSteps = 20;
 constexpr double kEnough = 1e-5;  // of the root: a step so short has left a square of it, 1e-10
 

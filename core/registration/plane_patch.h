@@ -9,6 +9,11 @@
 
 namespace tiltmap {
 
+inline constexpr double kResidualFloor_m = 0.002;  // no surface measured by us is known better, ours
+inline constexpr double kOffsetFloor_m = 0.0005;   // nor a plane's place
+inline constexpr double kPlaneFreedom = 3.0;       // degrees that a plane takes of its points
+inline constexpr double kLongestSpot_m = 2.0;      // from 2 s to 2 s; an LMS' pulse is some 2.5 m long
+
 // A covariance's eigenvalues, ascending, and its eigenvectors, a column each: unit, at right angles, of any
 // sign.
 struct PlaneAxes {

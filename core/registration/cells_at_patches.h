@@ -1,0 +1,36 @@
+// Whether cells lie on patches: many side by side.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/registration/patch_disc.h"
+
+namespace tiltmap {
+
+// What a cell on a patch must keep; squares of metres.
+struct CellRule {
+  float noise_square = 0.0F;      // along the beam
+  float floor_square = 0.0F;      // no mean of cells is known better
+  float excess_square = 0.0F;     // of surfaces, beyond what their patches tell
+  float spot_square = 0.0F;       // rad^2, of the cells' light (patch_spot_rad)
+  float gate_square = 0.0F;       // so many deviations, squared
+  float outside_m = 0.0F;         // of a patch's outline, a cell still lies on it
+  std::array<float, 3> origin{};  // of the cells' beams, frame of the patches, m
+};
+
+struct CellsAtPatches {
+  static constexpr std::size_t kMost = 256;
+  std::array<float, kMost> x, y, z;       // frame of the patches, m
+  std::array<float, kMost> count;         // of cells whose mean it is
+  std::array<std::int32_t, kMost> patch;  // that each is held against
+  // The answers: 1 where it lies there and sees the patch's front, else 0; how much too short its range is,
+  // as a share of it (shortRange); the variance of one cell along the patch's normal, m^2.
+  std::array<float, kMost> lies, share, variance;
+};
+
+// The first `count`, at most kMost, all finite.
+void testCells(const PatchDisc* discs, std::size_t count, const CellRule& rule, CellsAtPatches& cells);
+
+}  // namespace tiltmap
