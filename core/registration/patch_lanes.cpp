@@ -11,16 +11,30 @@ namespace tiltmap {
 
 namespace {
 
-// A plane's smaller eigenvalues differ ninefold, so that Newton's method begins within a ninth of the root
-// and each step squares what is left.
-constexpr int kNewtonSteps = 4;
-
+// Truth values are numbers here: the compiler does not put mixed widths side by side.
+constexpr double truth(bool is) {
+  return is ? 1.0 : 0.0;
+}
 constexpr double smaller(double a, double b) {
   return a < b ? a : b;
 }
 constexpr double larger(double a, double b) {
   return a > b ? a : b;
 }
+
+// x^3 - trace x^2 + minors x - determinant is zero at the eigenvalues; convex and falling left of the least.
+struct Cubic {
+  double trace, minors, determinant;
+
+  // One of Newton's steps from below. A plane's smaller eigenvalues differ ninefold, so that the bound that
+  // they begin from is within a ninth of the root, and each step squares what is left.
+  double nearer(double x) const {
+    const double slope = minors - x * (2.0 * trace - 3.0 * x);
+    const double value = determinant - x * (minors - x * (trace - x));
+    const double on = value / (slope > 0.0 ? slope : 1.0);
+    return x + (slope > 0.0 ? larger(on, 0.0) : 0.0);
+  }
+};
 
 }  // namespace
 
@@ -43,9 +57,12 @@ void spreadGroups(std::size_t count, GroupLanes& groups) {
   }
 }
 
+static_assert(static_cast<int>(GroupFate::Dropped) == 0 && static_cast<int>(GroupFate::Kept) == 1);
+
 TILTMAP_CLONES
-void judgePlanes(std::size_t count, const GroupLanes& groups, const PlaneRule& rule, PlaneLanes& planes) {
-  const GroupLanes& g = groups;
+void judgePlanes(std::size_t count, const GroupLanes& __restrict groups, const PlaneRule& rule,
+                 PlaneLanes& __restrict planes) {
+  const GroupLanes& __restrict g = groups;
   const PlaneRule r = rule;
   const double split = r.can_split ? 1.0 : 0.0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -54,14 +71,8 @@ void judgePlanes(std::size_t count, const GroupLanes& groups, const PlaneRule& r
     const double of_xx = yy * zz - yz * yz, of_yy = xx * zz - xz * xz, of_zz = xx * yy - xy * xy;
     const double minors = of_xx + of_yy + of_zz;
     const double determinant = xx * of_xx - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
-    // The least root of x^3 - trace x^2 + minors x - determinant, from below (planeAxes).
-    double least = g.least[i];
-    for (int step = 0; step < kNewtonSteps; ++step) {
-      const double slope = minors - least * (2.0 * trace - 3.0 * least);
-      const double value = determinant - least * (minors - least * (trace - least));
-      const double on = value / (slope > 0.0 ? slope : 1.0);
-      least += slope > 0.0 ? larger(on, 0.0) : 0.0;
-    }
+    const Cubic cubic{trace, minors, determinant};
+    const double least = cubic.nearer(cubic.nearer(cubic.nearer(cubic.nearer(g.least[i]))));
     // At right angles to the rows of covariance - least: the longest of their products.
     const double ax = xx - least, by = yy - least, cz = zz - least;
     const double abx = xy * yz - xz * by, aby = xz * xy - ax * yz, abz = ax * by - xy * xy;
@@ -73,13 +84,13 @@ void judgePlanes(std::size_t count, const GroupLanes& groups, const PlaneRule& r
     const double scale = ax * ax + by * by + cz * cz + 2.0 * (xy * xy + xz * xz + yz * yz);
     const bool is_plane = most > 1e-24 * scale * scale;
     const double length = 1.0 / std::sqrt(is_plane ? most : 1.0);
-    const bool take_ab = ab >= bc && ab >= ca, take_bc = bc >= ca;
+    const bool take_ab = ab >= larger(bc, ca), take_bc = bc >= ca;
     double nx = length * (take_ab ? abx : take_bc ? bcx : cax);
     double ny = length * (take_ab ? aby : take_bc ? bcy : cay);
     double nz = length * (take_ab ? abz : take_bc ? bcz : caz);
     // Two axes across it, of the same length; then the covariance along them.
     const double mx = std::abs(nx), my = std::abs(ny), mz = std::abs(nz);
-    const bool first_x = mx <= my && mx <= mz, first_y = my <= mz;
+    const bool first_x = mx <= smaller(my, mz), first_y = my <= mz;
     const double fx = first_x ? 0.0 : first_y ? -nz : ny;
     const double fy = first_x ? nz : first_y ? 0.0 : -nx;
     const double fz = first_x ? -ny : first_y ? nx : 0.0;
@@ -108,21 +119,20 @@ void judgePlanes(std::size_t count, const GroupLanes& groups, const PlaneRule& r
     const double towards = nx * x + ny * y + nz * z;
     const double cosine = smaller(std::abs(towards) / larger(range, 1e-9), 1.0);
     const double cos_square = cosine * cosine;
-    const bool planar = least < 2.0 * (r.noise_square * cos_square + r.floor_square);
-    const bool rough = least < 2.0 * (r.rough_noise_square * cos_square + r.rough_floor_square);
+    const double planar = truth(least < 2.0 * (r.noise_square * cos_square + r.floor_square));
+    const double rough = truth(least < 2.0 * (r.rough_noise_square * cos_square + r.rough_floor_square));
     const double spot = r.spot_rad * std::sqrt(1.0 - cos_square) / larger(cosine, 1e-6);
     const double back = 1.0 + spot * spot;
-    const bool told = 4.0 * spot * range <= kLongestSpot_m;
+    const double told = truth(4.0 * spot * range <= kLongestSpot_m);
     const double freedom = larger(n - kPlaneFreedom, 1.0);
     const double residual =
         (least * n + r.prior_points * r.prior_noise_square * cos_square) / (freedom + r.prior_points) +
         kResidualFloor_m * kResidualFloor_m;
-    const bool stands_out = is_plane && second >= 9.0 * least && second > 0.0;
-    const bool too_large = split * third > r.largest_square;
-    const bool divide = split > 0.0 && (too_large || !planar);
-    const bool keep = (planar || rough) && told && stands_out;
-    planes.fate[i] =
-        divide ? static_cast<double>(GroupFate::Split) : (keep ? static_cast<double>(GroupFate::Kept) : 0.0);
+    const double stands_out =
+        truth(most > 1e-24 * scale * scale) * truth(second >= 9.0 * least) * truth(second > 0.0);
+    const double divide = split * larger(truth(third > r.largest_square), 1.0 - planar);
+    const double keep = larger(planar, rough) * told * stands_out;
+    planes.fate[i] = divide > 0.0 ? static_cast<double>(GroupFate::Split) : keep;
 
     planes.x[i] = back * x, planes.y[i] = back * y, planes.z[i] = back * z;
     const double side = towards > 0.0 ? -1.0 : 1.0;
