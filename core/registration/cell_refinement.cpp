@@ -45,11 +45,10 @@ class Binning {
   }
 
   void add(const CellSamples& cells) {
-    MovedCells moved;
     for (std::size_t begin = 0; begin < cells.size(); begin += MovedCells::kMost) {
       const std::size_t count = std::min(MovedCells::kMost, cells.size() - begin);
-      moveCells(cells, begin, count, motion_, moved);
-      give(cells, begin, moved, count);
+      moveCells(cells, begin, count, motion_, moved_);
+      give(cells, begin, count);
     }
   }
 
@@ -75,69 +74,58 @@ class Binning {
   }
 
  private:
-  // First to the patch in a cell's own direction, then, where it does not lie there, to those around.
-  void give(const CellSamples& cells, std::size_t begin, const MovedCells& moved, std::size_t count) {
-    const std::uint32_t* raster = raster_.data();
-    std::size_t open = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      // The first that is painted; without branches.
-      const std::uint32_t* here = raster + moved.place[i];
-      std::uint32_t patch = here[PatchRaster::kAround[3]];
-      for (const std::size_t before : {2U, 1U, 0U}) {
-        const std::uint32_t other = here[PatchRaster::kAround[before]];
-        patch = other != PatchRaster::kNone ? other : patch;
-      }
-      patch = here[0] != PatchRaster::kNone ? here[0] : patch;
-      cell_[open] = static_cast<std::uint32_t>(i), last_[open] = patch;
-      open += patch != PatchRaster::kNone ? 1 : 0;
-    }
-    test(cells, begin, moved, open, [&](std::size_t k) { return last_[k]; });
-    for (const std::int32_t neighbour : PatchRaster::kAround)
-      test(cells, begin, moved, open, [&](std::size_t k) {
-        const std::uint32_t patch = raster[moved.place[cell_[k]] + neighbour];
-        const std::uint32_t fresh = patch == last_[k] ? PatchRaster::kNone : patch;
-        last_[k] = patch == PatchRaster::kNone ? last_[k] : patch;
-        return fresh;
-      });
-  }
-
-  // Holds the open cells against a patch each, and closes those that lie on it.
-  template <class PatchOf>
-  void test(const CellSamples& cells, std::size_t begin, const MovedCells& moved, std::size_t& open,
-            PatchOf&& patch_of) {
+  // First to the patch in a cell's own direction, then, where it does not lie there, to the first of those
+  // around on which it does.
+  void give(const CellSamples& cells, std::size_t begin, std::size_t count) {
+    std::copy_n(moved_.x.begin(), count, at_.x.begin());
+    std::copy_n(moved_.y.begin(), count, at_.y.begin());
+    std::copy_n(moved_.z.begin(), count, at_.z.begin());
+    std::copy_n(cells.count.begin() + static_cast<std::ptrdiff_t>(begin), count, at_.count.begin());
+    firstPainted(raster_.data(), moved_.place.data(), count, at_.cell.data());
+    holdAgainst(at_.cell.data(), count, at_);
+    testCells(discs_.data(), count, rule_, at_);
     std::size_t held = 0;
-    for (std::size_t k = 0; k < open; ++k) {
-      const std::uint32_t patch = patch_of(k), i = cell_[k];
-      at_.x[held] = moved.x[i], at_.y[held] = moved.y[i], at_.z[held] = moved.z[i];
-      at_.count[held] = cells.count[begin + i];
-      at_.patch[held] = static_cast<std::int32_t>(patch);
-      held_[held] = static_cast<std::uint32_t>(k);
-      held += patch != PatchRaster::kNone ? 1 : 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (at_.lies[i] > 0.0F)
+        lay(cells, begin + i, at_, i);
+      else if (at_.count[i] > 0.0F)
+        held = holdAround(i, held);
     }
-    testCells(discs_.data(), held, rule_, at_);
+    testCells(discs_.data(), held, rule_, around_);
+    std::uint32_t laid = kNobody;
     for (std::size_t h = 0; h < held; ++h) {
-      if (!(at_.lies[h] > 0.0F)) continue;
-      std::uint32_t& i = cell_[held_[h]];
-      lay(cells, begin + i, static_cast<std::size_t>(at_.patch[h]), at_.share[h], at_.variance[h]);
-      i = kLaid;
+      if (!(around_.lies[h] > 0.0F) || around_.cell[h] == laid) continue;
+      laid = around_.cell[h];
+      lay(cells, begin + laid, around_, h);
     }
-    std::size_t left = 0;
-    for (std::size_t k = 0; k < open; ++k) {
-      cell_[left] = cell_[k], last_[left] = last_[k];
-      left += cell_[k] != kLaid ? 1 : 0;
-    }
-    open = left;
   }
 
-  void lay(const CellSamples& cells, std::size_t cell, std::size_t patch, float share, float variance) {
-    Bin& bin = bins_[patch];
+  // Notes the patches around the one that the cell does not lie on; without branches.
+  std::size_t holdAround(std::size_t i, std::size_t held) {
+    auto last = static_cast<std::uint32_t>(at_.patch[i]);
+    const std::uint32_t* here = raster_.data() + moved_.place[i];
+    for (const std::int32_t neighbour : PatchRaster::kAround) {
+      const std::uint32_t patch = here[neighbour];
+      const bool painted = patch != PatchRaster::kNone;
+      around_.x[held] = at_.x[i], around_.y[held] = at_.y[i], around_.z[held] = at_.z[i];
+      around_.count[held] = at_.count[i];
+      around_.patch[held] = static_cast<std::int32_t>(patch);
+      around_.cell[held] = static_cast<std::uint32_t>(i);
+      held += painted && patch != last ? 1 : 0;
+      last = painted ? patch : last;
+    }
+    return held;
+  }
+
+  void lay(const CellSamples& cells, std::size_t cell, const CellsAtPatches& held, std::size_t at) {
+    Bin& bin = bins_[static_cast<std::size_t>(held.patch[at])];
     const auto n = static_cast<double>(cells.count[cell]);
-    const double w = n * (1.0 + static_cast<double>(share));
+    const double w = n * (1.0 + static_cast<double>(held.share[at]));
     bin.x += w * static_cast<double>(cells.x[cell]);
     bin.y += w * static_cast<double>(cells.y[cell]);
     bin.z += w * static_cast<double>(cells.z[cell]);
     bin.count += n;
-    bin.variance += n * static_cast<double>(variance);
+    bin.variance += n * static_cast<double>(held.variance[at]);
   }
 
   const SurfaceElements& elements_;
@@ -147,12 +135,9 @@ class Binning {
   FloatPose motion_;
   CellRule rule_;
   std::vector<Bin> bins_;
-  // Of the cells at work that lie on no patch yet.
-  static constexpr std::uint32_t kLaid = 0xffffffffU;
-  std::array<std::uint32_t, MovedCells::kMost> cell_;  // from the first at work
-  std::array<std::uint32_t, MovedCells::kMost> last_;  // the patch it was held against
-  std::array<std::uint32_t, MovedCells::kMost> held_;
-  CellsAtPatches at_;
+  static constexpr std::uint32_t kNobody = 0xffffffffU;
+  MovedCells moved_;
+  CellsAtPatches at_, around_;
 };
 
 bool canRefine(const PreparedScan& fixed, const PreparedScan& moving) {

@@ -23,11 +23,15 @@ struct CellSamples {
   void clear() {
     for (std::vector<float>* axis : {&x, &y, &z, &count}) axis->clear();
   }
-  void append(const CellSamples& other) {
-    x.insert(x.end(), other.x.begin(), other.x.end());
-    y.insert(y.end(), other.y.begin(), other.y.end());
-    z.insert(z.end(), other.z.begin(), other.z.end());
-    count.insert(count.end(), other.count.begin(), other.count.end());
+  // The first `n` of them.
+  void append(const CellSamples& other, std::size_t n) {
+    const auto add = [n](std::vector<float>& to, const std::vector<float>& from) {
+      to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(n));
+    };
+    add(x, other.x), add(y, other.y), add(z, other.z), add(count, other.count);
+  }
+  void resize(std::size_t n) {
+    for (std::vector<float>* axis : {&x, &y, &z, &count}) axis->resize(n);
   }
   void reserve(std::size_t n) {
     for (std::vector<float>* axis : {&x, &y, &z, &count}) axis->reserve(n);

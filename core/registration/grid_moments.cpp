@@ -16,6 +16,7 @@ namespace {
 struct Scratch {
   std::vector<float> inverse, used;
   std::vector<double> across, ahead, sums, moments;
+  std::vector<float> x, y, z;  // of the cells of a row of tiles
   CellSamples samples;
 };
 thread_local Scratch scratch;
@@ -36,7 +37,10 @@ struct LinePlane {
     ahead = tilted(geometry.mounting * Eigen::Vector3d::UnitY());
   }
 
-  Eigen::Vector3d point(double c, double s) const { return arm + c * across + s * ahead; }
+  LineFrame frame() const {
+    return {
+        {arm.x(), arm.y(), arm.z()}, {across.x(), across.y(), across.z()}, {ahead.x(), ahead.y(), ahead.z()}};
+  }
 
   // The tilt is the same for a whole line, so the three dimensions come in once a tile, not once a beam.
   LineToMoments moments() const {
@@ -175,24 +179,50 @@ class RegularTiles {
     }
   }
 
-  // Of the tiles whose lines came last.
-  void sample(const Moments* tiles, double whole_below_m, CellSamples& samples) const {
+  // Of the tiles whose lines came last. Into `samples` from `count` on, where there is room for all cells;
+  // returns how many there are then.
+  std::size_t sample(const Moments* tiles, double whole_below_m, CellSamples& samples, std::size_t count) {
+    placeLines();
+    const float *used = scratch_.used.data(), *x = scratch_.x.data(), *y = scratch_.y.data();
+    const float* z = scratch_.z.data();
+    float *to_x = samples.x.data(), *to_y = samples.y.data(), *to_z = samples.z.data();
+    float* to_count = samples.count.data();
     for (std::size_t first = 0; first < stride_; first += tile_columns_, ++tiles) {
       if (!(tiles->n > 0.0)) continue;
       if (isOne(*tiles, whole_below_m)) {
-        samples.add(tiles->mean(), tiles->n);
+        const Eigen::Vector3f mean = tiles->mean().cast<float>();
+        to_x[count] = mean.x(), to_y[count] = mean.y(), to_z[count] = mean.z();
+        to_count[count++] = static_cast<float>(tiles->n);
         continue;
       }
       for (std::size_t line = 0; line < planes_.size(); ++line)
-        for (std::size_t k = line * stride_ + first; k < line * stride_ + first + tile_columns_; ++k)
-          if (scratch_.used[k] > 0.0F) samples.add(pointOf(line, k), 1.0);
+        for (std::size_t k = line * stride_ + first; k < line * stride_ + first + tile_columns_; ++k) {
+          to_x[count] = x[k], to_y[count] = y[k], to_z[count] = z[k], to_count[count] = 1.0F;
+          count += used[k] > 0.0F ? 1 : 0;
+        }
     }
+    return count;
   }
 
  private:
-  // Of the cell at `k` of the lines of these tiles.
-  Eigen::Vector3d pointOf(std::size_t line, std::size_t k) const {
-    return tilts_ ? points_[k] : planes_[line].point(scratch_.across[k], scratch_.ahead[k]);
+  // The points of the lines of these tiles.
+  void placeLines() {
+    const std::size_t cells = planes_.size() * stride_;
+    for (std::vector<float>* axis : {&scratch_.x, &scratch_.y, &scratch_.z}) axis->resize(cells);
+    for (std::size_t line = 0; line < planes_.size(); ++line) {
+      const std::size_t begin = line * stride_;
+      if (!tilts_) {
+        placeInSpace(scratch_.across.data() + begin, scratch_.ahead.data() + begin, stride_,
+                     planes_[line].frame(), scratch_.x.data() + begin, scratch_.y.data() + begin,
+                     scratch_.z.data() + begin);
+        continue;
+      }
+      for (std::size_t k = begin; k < begin + columns_; ++k) {
+        if (!(scratch_.used[k] > 0.0F)) continue;
+        const Eigen::Vector3f p = points_[k].cast<float>();
+        scratch_.x[k] = p.x(), scratch_.y[k] = p.y(), scratch_.z[k] = p.z();
+      }
+    }
   }
 
   void handOver(Moments* tiles) const {
@@ -260,15 +290,17 @@ void tileRegular(const RangeImage& image, const ScannerGeometry& geometry, int t
   RegularTiles lines(image, geometry, tile_rows, tile_columns, drop_edges);
   if (lines.placesTiles()) grid.place.resize(grid.tile.size());
   CellSamples& sampled = scratch.samples;
-  sampled.clear();
+  std::size_t count = 0;
+  // One more: what is not used is written too, and then written over.
+  if (samples) sampled.resize(image.cells() + 1);
   for (int row = 0; row < image.rows(); ++row) {
     const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(row / tile_rows) * grid.columns;
     Moments* tiles = grid.tile.data() + first;
     lines.addLine(row, tiles, grid.place.data() + (grid.place.empty() ? 0 : first));
     if (samples && ((row + 1) % tile_rows == 0 || row + 1 == image.rows()))
-      lines.sample(tiles, whole_below_m, sampled);
+      count = lines.sample(tiles, whole_below_m, sampled, count);
   }
-  if (samples) samples->append(sampled);
+  if (samples) samples->append(sampled, count);
 }
 
 }  // namespace

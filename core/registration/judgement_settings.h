@@ -12,7 +12,8 @@ struct JudgementSettings {
   double fit_good = 0.7, fit_bad = 0.5;
   // The share that stands where the other scan looked through, at most.
   double through_good = 0.02, through_bad = 0.06;
-  // The share of the surfaces of one scan that lie on those of the other, at least, by the side that sees more.
+  // The share of the surfaces of one scan that lie on those of the other, at least, by the side that sees
+  // more.
   double overlap_good = 0.1, overlap_bad = 0.05;
   // Their distance over what their own noise makes of it, medians, at most.
   double residual_good = 2.5, residual_bad = 8.0;

@@ -73,6 +73,18 @@ void placeInLine(const float* __restrict used, const float* __restrict range_m, 
 }
 
 TILTMAP_CLONES
+void placeInSpace(const double* __restrict across, const double* __restrict ahead, std::size_t count,
+                  const LineFrame& frame, float* __restrict x, float* __restrict y, float* __restrict z) {
+  const LineFrame f = frame;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double a = across[k], b = ahead[k];
+    x[k] = static_cast<float>(f.start[0] + a * f.across[0] + b * f.ahead[0]);
+    y[k] = static_cast<float>(f.start[1] + a * f.across[1] + b * f.ahead[1]);
+    z[k] = static_cast<float>(f.start[2] + a * f.across[2] + b * f.ahead[2]);
+  }
+}
+
+TILTMAP_CLONES
 void sumTiles(const float* used, const double* across, const double* ahead, std::size_t tiles,
               std::size_t tile_columns, double* sums) {
   if (tile_columns == 4)

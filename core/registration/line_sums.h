@@ -31,6 +31,14 @@ void chooseCells(const float* before, const float* here, const float* after, std
 void placeInLine(const float* used, const float* range_m, std::size_t count, double offset_m,
                  const double* cosine, const double* sine, double* across, double* ahead);
 
+// Points of the cells of one line: start + across a + ahead b for each, where (a, b) is a cell in the
+// mirror's plane.
+struct LineFrame {
+  std::array<double, 3> start, across, ahead;
+};
+void placeInSpace(const double* across, const double* ahead, std::size_t count, const LineFrame& frame,
+                  float* x, float* y, float* z);
+
 // Sums over a tile's cells of one line: of 1, c, s, cc, cs, ss, where (c, s) is a cell in the mirror's plane.
 inline constexpr std::size_t kLineSums = 6;
 // Into `sums`, kLineSums rows of `tiles` numbers. The rows of cells end with zeros up to a whole tile.

@@ -281,7 +281,8 @@ void Registration::updateLossScale() {
   if (!loss_.isOwn() && loss_.scale_m > settings_.loss_end_m) {
     // A start that is good already need not wait for the scale to come down.
     const double next = std::min(loss_.scale_m * settings_.loss_factor, settings_.loss_follow * typical);
-    loss_ = std::max(settings_.loss_end_m, iteration_ > begun_at_ + 1 ? next : loss_.scale_m * settings_.loss_factor);
+    loss_ = std::max(settings_.loss_end_m,
+                     iteration_ > begun_at_ + 1 ? next : loss_.scale_m * settings_.loss_factor);
     return;
   }
   --own_scale_steps_left_;
@@ -302,7 +303,8 @@ std::optional<StopReason> Registration::endOfStep(const StepReport& report,
                                                   const PoseDifference& motion) const {
   if (motion.translation_m < settings_.min_translation_m && motion.rotation_rad < settings_.min_rotation_rad)
     return verified(StopReason::TinyMotion);
-  if (iteration_ > begun_at_ + 1 && report.change < settings_.min_change) return verified(StopReason::Converged);
+  if (iteration_ > begun_at_ + 1 && report.change < settings_.min_change)
+    return verified(StopReason::Converged);
   return limitReached();
 }
 
