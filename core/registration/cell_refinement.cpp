@@ -83,15 +83,23 @@ class Binning {
     std::copy_n(cells.count.begin() + static_cast<std::ptrdiff_t>(begin), count, at_.count.begin());
     firstPainted(raster_.data(), moved_.place.data(), count, at_.cell.data());
     holdAgainst(at_.cell.data(), count, at_);
-    testCells(discs_.data(), count, rule_, at_);
     std::size_t held = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (at_.lies[i] > 0.0F)
-        lay(cells, begin + i, at_, i);
-      else if (at_.count[i] > 0.0F)
-        held = holdAround(i, held);
+    for (std::size_t first = 0; first < count; first += kSideBySide) {
+      const std::size_t last = std::min(first + kSideBySide, count);
+      // Where scans hardly overlap, most cells are where the other saw nothing.
+      if (std::none_of(at_.count.begin() + static_cast<std::ptrdiff_t>(first),
+                       at_.count.begin() + static_cast<std::ptrdiff_t>(last),
+                       [](float cells_there) { return cells_there > 0.0F; }))
+        continue;
+      testCells(discs_.data(), first, last, rule_, at_);
+      for (std::size_t i = first; i < last; ++i) {
+        if (at_.lies[i] > 0.0F)
+          lay(cells, begin + i, at_, i);
+        else if (at_.count[i] > 0.0F)
+          held = holdAround(i, held);
+      }
     }
-    testCells(discs_.data(), held, rule_, around_);
+    testCells(discs_.data(), 0, held, rule_, around_);
     std::uint32_t laid = kNobody;
     for (std::size_t h = 0; h < held; ++h) {
       if (!(around_.lies[h] > 0.0F) || around_.cell[h] == laid) continue;
@@ -136,6 +144,7 @@ class Binning {
   CellRule rule_;
   std::vector<Bin> bins_;
   static constexpr std::uint32_t kNobody = 0xffffffffU;
+  static constexpr std::size_t kSideBySide = 32;
   MovedCells moved_;
   CellsAtPatches at_, around_;
 };

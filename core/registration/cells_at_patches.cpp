@@ -17,11 +17,11 @@ constexpr float truth(bool is) {
 }  // namespace
 
 TILTMAP_CLONES
-void testCells(const PatchDisc* __restrict discs, std::size_t count, const CellRule& rule,
+void testCells(const PatchDisc* __restrict discs, std::size_t begin, std::size_t end, const CellRule& rule,
                CellsAtPatches& __restrict cells) {
   const CellRule r = rule;
   const float ox = r.origin[0], oy = r.origin[1], oz = r.origin[2];
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = begin; i < end; ++i) {
     const PatchDisc& disc = discs[cells.patch[i]];
     const float count_here = cells.count[i];
     const float x = cells.x[i], y = cells.y[i], z = cells.z[i];

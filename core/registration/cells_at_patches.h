@@ -33,8 +33,9 @@ struct CellsAtPatches {
   std::array<float, kMost> lies, share, variance;
 };
 
-// The first `count`, at most kMost, all finite.
-void testCells(const PatchDisc* discs, std::size_t count, const CellRule& rule, CellsAtPatches& cells);
+// Those from `begin` up to `end`, at most kMost, all finite.
+void testCells(const PatchDisc* discs, std::size_t begin, std::size_t end, const CellRule& rule,
+               CellsAtPatches& cells);
 
 // The first that is painted of the cell at a place of the raster and those around it (PatchRaster::kAround),
 // or PatchRaster::kNone.
