@@ -9,13 +9,22 @@
 
 #include <Eigen/Core>
 
+#include "core/registration/element_lanes.h"
+
 namespace tiltmap {
 
 // Rows of equal elevation, each cut into buckets of about the same width. Immutable.
 class DirectionIndex {
  public:
-  // Positions in the frame of the scanner, metres; one at the origin is in no bucket.
-  DirectionIndex(std::span<const Eigen::Vector3d> positions, double bucket_rad);
+  // Positions in the frame of the scanner, metres; one at the origin is in no bucket. With normals, one a
+  // position, for nearestFitting.
+  DirectionIndex(std::span<const Eigen::Vector3d> positions, double bucket_rad,
+                 std::span<const Eigen::Vector3d> normals = {});
+
+  static constexpr std::uint32_t kNobody = 0xffffffffU;
+  // Of the elements around the direction of `p`, the nearest whose normal makes an angle of at least the
+  // cosine with `normal`; where none does, the nearest; kNobody where there are none.
+  std::uint32_t nearestFitting(const Eigen::Vector3d& p, const Eigen::Vector3d& normal, double min_cos) const;
 
   // Calls visit(first, last), pointers to element indices, for the up to nine buckets around the direction of
   // `p`.
@@ -67,6 +76,7 @@ class DirectionIndex {
   std::vector<int> row_start_;                       // buckets before each row
   std::vector<std::uint32_t> bucket_start_;          // items before each bucket
   std::vector<std::uint32_t> items_;
+  ElementLanes lanes_;  // of the items, where there are normals
 };
 
 }  // namespace tiltmap

@@ -11,7 +11,7 @@ namespace tiltmap {
 
 namespace {
 
-constexpr std::uint32_t kNobody = 0xffffffffU;
+constexpr std::uint32_t kNobody = DirectionIndex::kNobody;
 constexpr std::size_t kShootingCandidates = 12;
 constexpr float kSamePatch_m =
     0.05F;  // a patch seen in a direction and this near is not compared with others
@@ -57,25 +57,6 @@ std::uint32_t normalShooting(const PreparedScan& to, const Query& query,
     if (off < best_off) best_off = off, best = candidate.index;
   }
   return best;
-}
-
-// Nearest with a fitting normal in about the same direction from the scanner of `to`; where none fits, the
-// nearest, which the rules then reject by its own reason.
-std::uint32_t projective(const PreparedScan& to, const DirectionIndex& directions, const Query& query,
-                         double min_cos) {
-  std::uint32_t best = kNobody, any = kNobody;
-  double best_square = std::numeric_limits<double>::infinity(), any_square = best_square;
-  const Eigen::Vector3d* positions = to.elements.position.data();
-  const Eigen::Vector3d* normals = to.elements.normal.data();
-  directions.around(query.position, [&](const std::uint32_t* first, const std::uint32_t* last) {
-    for (; first != last; ++first) {
-      const double square = (positions[*first] - query.position).squaredNorm();
-      if (square < any_square) any_square = square, any = *first;
-      if (square < best_square && normals[*first].dot(query.normal) >= min_cos)
-        best_square = square, best = *first;
-    }
-  });
-  return best == kNobody ? any : best;
 }
 
 // How far a place is from a patch as a disc, squared: across its plane, and beyond its edge along it.
@@ -193,7 +174,7 @@ void choosePairs(const PreparedScan& from, const PreparedScan& to, const Pose& t
           partner = normalShooting(to, query, scratch);
           break;
         case PairChoice::Projective:
-          partner = projective(to, *directions, query, min_cos);
+          partner = directions->nearestFitting(query.position, query.normal, min_cos);
           break;
       }
     }

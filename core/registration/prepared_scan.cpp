@@ -146,8 +146,9 @@ void addSearch(const RegistrationSettings& settings, PreparedScan& prepared) {
   if (settings.pair_choice != PairChoice::Projective) {
     prepared.tree.emplace(prepared.elements.position);
   } else if (!prepared.raster) {
-    prepared.directions.emplace(prepared.elements.position, kBucket_rad);
-    prepared.wide_directions.emplace(prepared.elements.position, kWideBucket_rad);
+    const SurfaceElements& elements = prepared.elements;
+    prepared.directions.emplace(elements.position, kBucket_rad, elements.normal);
+    prepared.wide_directions.emplace(elements.position, kWideBucket_rad, elements.normal);
   }
 }
 
