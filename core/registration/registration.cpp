@@ -25,8 +25,11 @@ constexpr int kMostRefinements = 4;
 // Surfaces that fit worse than this are not the same surfaces.
 constexpr double kMostExcess_m = 0.05;
 
-// The wide search pairs at least so many.
+// The wide search pairs at least so many, and about so many at most.
 constexpr std::size_t kWideSample = 200;
+constexpr std::size_t kMostWide = 600;
+// Of an unordered cloud, while the loss scale comes down.
+constexpr std::size_t kMostEarly = 800;
 
 // One in so many, or more than that where too few would be left.
 std::vector<std::uint32_t> everyNth(const std::vector<std::uint32_t>& all, int n, std::size_t least) {
@@ -117,12 +120,19 @@ Registration::Registration(PreparedScanPtr fixed, PreparedScanPtr moving, const 
     throw std::invalid_argument(status.error().what);
   if (!start_.isFinite()) throw std::invalid_argument("Registration: the start is not finite");
   moving_sample_ = sampledElements(moving_->elements, settings_);
-  wide_sample_ = everyNth(moving_sample_, settings_.wide_step, kWideSample);
+  takeFewer(moving_sample_, wide_sample_, early_sample_);
   if (settings_.both_directions) {
     fixed_sample_ = sampledElements(fixed_->elements, settings_);
-    wide_fixed_sample_ = everyNth(fixed_sample_, settings_.wide_step, kWideSample);
+    takeFewer(fixed_sample_, wide_fixed_sample_, early_fixed_sample_);
   }
   begin();
+}
+
+void Registration::takeFewer(const std::vector<std::uint32_t>& all, std::vector<std::uint32_t>& wide,
+                             std::vector<std::uint32_t>& early) const {
+  const auto oneIn = [&](std::size_t most) { return static_cast<int>(all.size() / most); };
+  wide = everyNth(all, std::max(settings_.wide_step, oneIn(kMostWide)), kWideSample);
+  early = everyNth(all, std::max(1, oneIn(kMostEarly)), kWideSample);
 }
 
 void Registration::begin() {
@@ -175,13 +185,16 @@ StepReport Registration::step(const std::stop_token& stop) {
 
 void Registration::findPairsOfStep(StepReport& report) {
   // Annealing needs no fine pose, nor does what cells will refine; blocks are many.
-  const bool blocks = bothAreBlocks() && settings_.loss == Loss::Annealed;
-  const bool early =
+  const bool annealing = settings_.loss == Loss::Annealed && settings_.pair_choice == PairChoice::Projective;
+  const bool blocks = bothAreBlocks() && annealing;
+  const bool wide =
       loss_.isOwn() ? blocks && settings_.refine : blocks || loss_.scale_m > settings_.wide_search_above_m;
-  const bool coarse = settings_.pair_choice == PairChoice::Projective && early;
+  const bool early = annealing && !loss_.isOwn();
+  const bool projective = settings_.pair_choice == PairChoice::Projective;
+  const auto& moving = wide && projective ? wide_sample_ : early ? early_sample_ : moving_sample_;
+  const auto& fixed = wide && projective ? wide_fixed_sample_ : early ? early_fixed_sample_ : fixed_sample_;
   report.rejected =
-      findPairs(*fixed_, *moving_, pose_, coarse ? wide_fixed_sample_ : fixed_sample_,
-                coarse ? wide_sample_ : moving_sample_, loss_.scale_m, settings_, rejection_, pairs_);
+      findPairs(*fixed_, *moving_, pose_, fixed, moving, loss_.scale_m, settings_, rejection_, pairs_);
   report.pairs = kept_ = report.rejected[static_cast<std::size_t>(RejectReason::None)];
   report.loss = loss_;
 }

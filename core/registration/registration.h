@@ -109,6 +109,8 @@ class Registration {
   std::optional<StopReason> refineStep(StepReport& report);
   std::optional<StopReason> endOfStep(const StepReport& report, const PoseDifference& motion) const;
   StopReason verified(StopReason reason) const;
+  void takeFewer(const std::vector<std::uint32_t>& all, std::vector<std::uint32_t>& wide,
+                 std::vector<std::uint32_t>& early) const;
   void begin();
   void beginAnewStrictly();
 
@@ -116,7 +118,8 @@ class Registration {
   RegistrationSettings settings_;
   Pose start_, pose_;
   std::vector<std::uint32_t> moving_sample_, fixed_sample_;
-  std::vector<std::uint32_t> wide_sample_, wide_fixed_sample_;  // fewer, in the first steps
+  std::vector<std::uint32_t> wide_sample_, wide_fixed_sample_;    // fewer, in the first steps
+  std::vector<std::uint32_t> early_sample_, early_fixed_sample_;  // then, where there are very many
   std::vector<Correspondence> pairs_;
   RejectionState rejection_;
   Residuals residuals_;
