@@ -52,6 +52,9 @@ std::string summary(const nlohmann::json& report) {
             " ms settling)";
   }
   text += "; on the disk within " + fixedReal(report["slowest_store_ms"].get<double>(), 0) + " ms";
+  if (report.contains("known_rig"))
+    text += "\ntaken over from earlier stops: " + report["known_rig"].get<std::string>() +
+            "; --known-rig=false leaves it away";
   if (const int spoiled = report["spoiled"].get<int>(); spoiled > 0)
     text += "\ntaken again, because damaged on the wire or measured before the tilt stood: " +
             counted(spoiled, "line");

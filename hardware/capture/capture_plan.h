@@ -33,6 +33,7 @@ struct CaptureSettings {
   BodyAxes odometry_axes = BodyAxes::ForwardLeftUp;
   bool resume = false;
   double patience_s = 60.0;
+  bool known_rig = true;  // hardware/capture/known_rig.h
 };
 
 ExperimentId experimentOf(CaptureDrive drive);

@@ -8,6 +8,7 @@
 #include "core/base/text.h"
 #include "core/base/version.h"
 #include "hardware/capture/capture_operation.h"
+#include "hardware/capture/known_rig.h"
 #include "hardware/capture/stop_odometry.h"
 
 namespace tiltmap {
@@ -94,6 +95,19 @@ class Capture {
     return job;
   }
 
+  // What the stop takes over from those before it.
+  KnownRig known(const ScannerGeometry& sweep, const std::string& instruments) {
+    if (!plan_.settings.known_rig) return {};
+    auto rig = knownRig(*task_.snapshot, sweep, instruments);
+    if (!rig) {
+      warnings_.push_back("calibration and mask of earlier stops could not be read, so this one has none: " +
+                          rig.error().what);
+      return {};
+    }
+    known_rig_ = knownRigText(*rig);
+    return std::move(*rig);
+  }
+
   // The stop as the start of a capture in the project; its id.
   Result<ScanId> begin(int k, const ScannerGeometry& geometry, const Pose& pose) {
     const int number =
@@ -109,7 +123,10 @@ class Capture {
     }
     ProjectEdit edit;
     edit.title = "capture " + add.scan.name;
+    const KnownRig rig = known(geometry, add.scan.source);
+    takeOver(rig, add.scan.geometry);
     edit.steps.emplace_back(std::move(add));
+    if (rig.body) edit.steps.emplace_back(SetBodyMask{addedScan(0), rig.body});
     edit.jobs.push_back(record(k));
     auto change = live_.apply(std::move(edit));
     if (!change) return fail(change.error());
@@ -188,6 +205,7 @@ class Capture {
                              {"spoiled", total_.spoiled},
                              {"recoveries", total_.recoveries},
                              {"slowest_store_ms", 1000.0 * total_.slowest_store_s}};
+    if (!known_rig_.empty()) report["known_rig"] = known_rig_;
     if (experiment_) {
       const Mip50EmulatorSettings motor;
       report["experiment"] = std::string(nameOf(experiment_->id()));
@@ -210,6 +228,7 @@ class Capture {
   std::unique_ptr<StopOdometry> odometry_source_;
   std::optional<Pose> last_pose_;
   int added_ = 0;
+  std::string known_rig_;  // what the last stop took over
   SweepReport total_;
   std::vector<double> durations_;
   std::vector<std::string> warnings_;

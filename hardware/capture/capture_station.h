@@ -69,6 +69,7 @@ struct StationSnapshot {
   bool live = true;  // lines between sweeps are told
   StationLinePtr line;
   std::size_t lines_seen = 0;
+  int columns = 0;
   double azimuth_start_rad = 0.0, azimuth_step_rad = 0.0;
   std::optional<double> tilt_rad;    // where it stands; nothing while it moves or is not known
   std::optional<double> target_rad;  // of a move

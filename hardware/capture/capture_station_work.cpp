@@ -115,6 +115,7 @@ void CaptureStation::showInstruments() {
   update([&](StationSnapshot& now) {
     now.scanner = {scanner->name(), scanner->facts()};
     now.tilt = {tilt->name(), tilt->facts()};
+    now.columns = scanner->columns();
     now.azimuth_start_rad = scanner->azimuthStart();
     now.azimuth_step_rad = scanner->azimuthStep();
     for (const auto& list : told)

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "hardware/capture/known_rig.h"
 #include "hardware/capture/station_capture.h"
 #include "ui/models/job_queue.h"
 #include "ui/models/project_session.h"
@@ -186,7 +187,8 @@ std::vector<double> CaptureModel::azimuths(std::size_t columns) const {
 ParameterValues CaptureModel::values(bool resume) const {
   ParameterValues values;
   const ParameterValues all = parameters_->values();
-  for (const char* name : {"lines", "step", "start", "mode", "patience"}) values[name] = all.at(name);
+  for (const char* name : {"lines", "step", "start", "mode", "patience", "known-rig"})
+    values[name] = all.at(name);
   if (resume) values["resume"] = true;
   return values;
 }
@@ -212,6 +214,33 @@ void CaptureModel::startSweep(bool resume, const std::optional<Pose>& last_from_
   else
     refused_ = job.error();
   Q_EMIT changed();
+}
+
+QString CaptureModel::knownRigText() const {
+  const SnapshotPtr snapshot = session_.snapshot();
+  CaptureSettings settings;
+  if (!snapshot || snapshot->scans().empty() || now_.columns == 0 || parameters_->hasErrors() ||
+      !captureTable().apply(values(false), settings))
+    return {};
+  ScannerGeometry sweep{.rows = settings.lines,
+                        .columns = now_.columns,
+                        .azimuth_start_rad = now_.azimuth_start_rad,
+                        .azimuth_step_rad = now_.azimuth_step_rad,
+                        .tilt_start_rad = settings.start_rad,
+                        .tilt_step_rad = settings.step_rad};
+  if (isSweeping()) return known_rig_text_;  // each line is another revision
+  // A mask is read out of a matrix: once for what it depends on.
+  const std::tuple key{snapshot->projectId(), snapshot->revision(), now_.scanner.name, now_.tilt.name,
+                       settings.lines,        settings.start_rad,   settings.step_rad, now_.columns};
+  if (known_rig_key_ != key) {
+    known_rig_key_ = key;
+    const std::string instruments = now_.source.emulate == CaptureDrive::None
+                                        ? now_.scanner.name + ", " + now_.tilt.name
+                                        : emulatedSource(now_.source.emulate, now_.source.seed);
+    const auto rig = knownRig(*snapshot, sweep, instruments);
+    known_rig_text_ = rig ? qt(tiltmap::knownRigText(*rig)) : QString();
+  }
+  return known_rig_text_;
 }
 
 QString CaptureModel::whyNotStart() const {

@@ -7,6 +7,8 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <tuple>
 
 #include "hardware/capture/capture_station.h"
 #include "ui/models/capture_verdict.h"
@@ -70,6 +72,9 @@ class CaptureModel : public QObject {
   // for emulated drives, which bring their own.
   void start(const std::optional<Pose>& last_from_next);
   void resume();
+  // What the next stop takes over from those before it where "known-rig" is set: "the calibration of stop 3
+  // ..."; empty for nothing, or while no instruments are known.
+  QString knownRigText() const;
   QString whyNotStart() const;  // empty where it can
   bool canResume() const;       // the last scan is not whole, and instruments are there
   bool needsOdometry() const;   // there is a stop before, and the instruments are no emulated drive
@@ -125,6 +130,9 @@ class CaptureModel : public QObject {
   std::optional<int> job_;
   std::optional<Error> refused_;  // of the last start
   bool place_shown_ = false, place_stored_ = false;
+  mutable std::tuple<std::string, std::int64_t, std::string, std::string, int, double, double, int>
+      known_rig_key_;
+  mutable QString known_rig_text_;
   QElapsedTimer disk_read_;
   double disk_free_bytes_ = -1.0;
 };

@@ -15,13 +15,15 @@ CaptureStopPage::CaptureStopPage(CaptureModel& model, const PanelContext& contex
     : QWidget(parent),
       model_(model),
       odometry_(new OdometryForm(context.theme, context.workspace.preferences(), this)),
-      own_(wrappedLabel(this, "capture-own-odometry")) {
+      own_(wrappedLabel(this, "capture-own-odometry")),
+      known_rig_(wrappedLabel(this, "capture-known-rig")) {
   own_->setText("The emulated drive brings its own odometry.");
   auto* form = new ParameterForm(model.parameters(), context.workspace.preferences(), context.theme, this);
   QStringList others;
   for (const ParameterInfo& info : model.parameters().infos()) {
     const QString name = QString::fromStdString(info.name);
-    if (!QStringList{"mode", "lines", "step", "start", "patience"}.contains(name)) others << name;
+    if (!QStringList{"mode", "lines", "step", "start", "patience", "known-rig"}.contains(name))
+      others << name;
   }
   form->leaveOut(others);
   auto* column = new QVBoxLayout(this);
@@ -30,9 +32,11 @@ CaptureStopPage::CaptureStopPage(CaptureModel& model, const PanelContext& contex
   column->addWidget(own_);
   column->addWidget(odometry_);
   column->addWidget(form);
+  column->addWidget(known_rig_);
   column->addStretch(1);
   connect(odometry_, &OdometryForm::changed, this, &CaptureStopPage::changed);
   connect(&model_.parameters(), &ParameterModel::valueChanged, this, &CaptureStopPage::changed);
+  connect(&model_.parameters(), &ParameterModel::valueChanged, this, &CaptureStopPage::refresh);
   connect(&model_, &CaptureModel::changed, this, &CaptureStopPage::refresh);
   refresh();
 }
@@ -51,6 +55,10 @@ void CaptureStopPage::refresh() {
   odometry_->setVisible(!own);
   const bool first = !own && !model_.needsOdometry();
   if (odometry_->isFirstStop() != first) odometry_->setFirstStop(first);
+  const QString rig = model_.knownRigText();
+  const bool taken = std::get<bool>(model_.parameters().values().at("known-rig"));
+  known_rig_->setVisible(!rig.isEmpty());
+  known_rig_->setText((taken ? "Takes over " : "Leaves away ") + rig + ".");
   const StationSweep& sweep = model_.now().sweep;
   if (sweep.complete && sweep.number != captured_) {
     captured_ = sweep.number;

@@ -33,7 +33,8 @@ class CaptureStopPage : public QWidget {
 
   CaptureModel& model_;
   OdometryForm* odometry_;
-  QLabel* own_;       // of drives that bring their own odometry
+  QLabel* own_;        // of drives that bring their own odometry
+  QLabel* known_rig_;  // what it takes over from stops before
   int captured_ = 0;  // number of the last sweep that became a stop
 };
 
