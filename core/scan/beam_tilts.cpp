@@ -10,7 +10,8 @@
 namespace tiltmap {
 
 int mirrorTurns(const ScannerGeometry& geometry) {
-  constexpr double kWholeDegree = kDegree;
+  constexpr double kWholeDegree = kDegree, kWidestInterlacedRad = 181.0 * kDegree;
+  if (std::abs(geometry.azimuth_step_rad) * (geometry.columns - 1) > kWidestInterlacedRad) return 1;
   return std::max(1, static_cast<int>(std::lround(kWholeDegree / std::abs(geometry.azimuth_step_rad))));
 }
 

@@ -17,7 +17,8 @@
 
 namespace tiltmap {
 
-// By the spacing of the beams: 1 for whole degrees, 2 for half and 4 for quarter ones.
+// By the spacing of the beams: 1 for whole degrees, 2 for half and 4 for quarter ones. That is how an LMS 2xx
+// does it, which sees half a circle at most; scanners that see more fire all beams in one turn.
 int mirrorTurns(const ScannerGeometry& geometry);
 // When a beam is fired, in turns of the mirror since its line began.
 double beamTurns(const ScannerGeometry& geometry, int column);

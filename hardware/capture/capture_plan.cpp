@@ -82,10 +82,11 @@ const ParameterTable<CaptureSettings>& captureTable() {
         "ours");
     t.real("patience", &S::patience_s, "s", 1.0, 3600.0,
            "How long an instrument that got lost is looked for before the capture ends", "ours");
-    t.boolean("known-rig", &S::known_rig,
-              "Give the stop the calibration and the mask of the machine's body that earlier stops of the same "
-              "instruments and sweep have in the project",
-              "ours");
+    t.boolean(
+        "known-rig", &S::known_rig,
+        "Give the stop the calibration and the mask of the machine's body that earlier stops of the same "
+        "instruments and sweep have in the project",
+        "ours");
     return t;
   }();
   return table;

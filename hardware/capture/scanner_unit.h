@@ -19,6 +19,11 @@ namespace tiltmap {
 // not known about it on the late side of `from` and of `to`.
 struct LineTimes {
   Instant from{}, to{};
+  // How long before `to` the last turn of the mirror was over, as well as it is known: for lines taken while
+  // the tilt moves, which need the likeliest instant and not a safe one.
+  Duration spare{};
+
+  Instant ended() const { return to - spare; }
 };
 
 // A line is on its way: it has been measured, and what moves now cannot spoil it any more.

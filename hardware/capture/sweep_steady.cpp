@@ -10,6 +10,7 @@
 
 #include "core/base/text.h"
 #include "core/project/moving_line.h"
+#include "core/scan/beam_tilts.h"
 #include "hardware/capture/sweep_run.h"
 
 namespace tiltmap {
@@ -61,6 +62,13 @@ Status Sweep::checkSteady(const ScannerGeometry& geometry) const {
   if (!(pass.period_s > 0.0))
     return fail("the instants of this scanner's beams are not known", scanner_->name(),
                 "capture line by line: --mode stop");
+  // What is stored of a line tells how many turns it took by the shape of its fan alone.
+  if (std::lround(pass.duration_s / scanner_->turnDuration()) != mirrorTurns(geometry))
+    return fail(
+        "beams of this spacing in so narrow a field of view would be taken for those of an LMS 2xx, "
+        "which needs several turns of its mirror for them",
+        scanner_->name(),
+        "let the scanner send its whole field of view, or capture line by line: --mode stop");
   if (!(pass.speed.rate_rad_s > 0.0))
     return fail("this tilt cannot move steadily", tilt_->name(), "capture line by line: --mode stop");
   if (!(geometry.tilt_step_rad > 0.0))
@@ -93,7 +101,7 @@ Status Sweep::watch(Run& run, SteadyPass& pass, const std::function<bool()>& don
       if (std::holds_alternative<LineSpoiled>(**event) && pass.measuring)
         if (Status status = spoiled(run); !status) return status;
       if (auto* line = std::get_if<LineTaken>(&**event)) {
-        run.line_end = line->measured.to;
+        run.line_end = line->measured.ended();
         run.spoiled_in_a_row = 0;
         if (pass.measuring) pass.held.push_back({std::move(*line), clock.now()});
       }
@@ -177,13 +185,14 @@ Status Sweep::storeSteady(Run& run, const SteadyPass& pass) {
   // A line arrives so long after it was measured, all of them alike. One that seems to have taken longer came
   // late or was dated too early: it is not known which.
   Duration lag = Duration::max();
-  for (const SteadyPass::Held& held : pass.held) lag = std::min(lag, held.arrived - held.line.measured.to);
+  for (const SteadyPass::Held& held : pass.held)
+    lag = std::min(lag, held.arrived - held.line.measured.ended());
   for (int row = pass.first; motion && row <= pass.last; ++row) {
     if (run.taken[static_cast<std::size_t>(row)]) continue;
     const SteadyPass::Held* nearest = nullptr;
     double off = 0.51 * pass.pitchRad() + 1e-4;
     for (const SteadyPass::Held& held : pass.held) {
-      const Instant to = held.line.measured.to, from = to - durationOf(pass.duration_s);
+      const Instant to = held.line.measured.ended(), from = to - durationOf(pass.duration_s);
       if (from < motion->steadyFrom() || to > motion->steadyTo()) continue;
       if (held.arrived - to > lag + durationOf(0.9 * pass.period_s)) continue;
       const double way =
@@ -193,8 +202,9 @@ Status Sweep::storeSteady(Run& run, const SteadyPass& pass) {
     if (!nearest) continue;
     const LineTaken& line = nearest->line;
     run.finished = std::max(run.finished, nearest->arrived);
-    ScanLine stored{motion->angle(line.measured.to), instruments_.clock->unixTime(line.measured.to),
-                    line.range_m, line.code, line.intensity};
+    const Instant end = line.measured.ended();
+    ScanLine stored{motion->angle(end), instruments_.clock->unixTime(end), line.range_m, line.code,
+                    line.intensity};
     setTurnTilt(stored, motion->signedRate() * scanner_->turnDuration());
     run.handOver(row, std::move(stored));
     if (Status status = run.settleStored(kUnstored); !status) {

@@ -22,6 +22,9 @@ constexpr std::uint16_t kFirstDistance = 16;  // smaller values are codes
 constexpr std::uint16_t kDazzled = 1;
 constexpr double kUnit = 1e-4 * kDegree;
 constexpr double kMostTurnS = 0.2;
+constexpr double kMostPeriodS = 2.0;
+constexpr double kMostTurnsOld = 5.0;  // when it is handed over
+constexpr std::size_t kRhythm = 4;     // scans that are looked at for it
 
 std::string hertz(std::uint32_t frequency_chz) {
   return shortestReal(frequency_chz / 100.0) + " Hz";
@@ -215,8 +218,26 @@ Status ColaScannerUnit::startMeasuring(const JobControl& job) {
               "switch it off and on, and look at its lamps");
 }
 
+// A scan is stamped when its turn begins and when it is handed over, which can be no more than some turns
+// later. From scan to scan are whole turns.
+void ColaScannerUnit::readRhythm(const std::vector<cola::Scan>& scans) {
+  period_s_ = 0.0;
+  double shortest_s = kMostPeriodS;
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    const double age_s = secondsOf(device_clock_.between(scans[k].measured_us, scans[k].sent_us));
+    if (age_s < 0.5 * turn_s_ || age_s > kMostTurnsOld * turn_s_) return;
+    if (k == 0) continue;
+    const double way_s = secondsOf(device_clock_.between(scans[k - 1].measured_us, scans[k].measured_us));
+    const double turns = way_s / turn_s_;
+    if (turns < 0.9 || std::abs(turns - std::round(turns)) > 0.1 * std::round(turns)) return;
+    shortest_s = std::min(shortest_s, way_s);
+  }
+  if (shortest_s < kMostPeriodS) period_s_ = turn_s_ * std::round(shortest_s / turn_s_);
+}
+
 Status ColaScannerUnit::awaitFirstScan(const JobControl& job) {
   const Instant end = clock_.now() + durationOf(kFirstScanS);
+  std::vector<cola::Scan> scans;
   while (clock_.now() < end) {
     if (job.stopRequested()) return fail(kCancelled, name_, "start it again");
     if (Status status = receive(); !status) return status;
@@ -235,10 +256,15 @@ Status ColaScannerUnit::awaitFirstScan(const JobControl& job) {
       turn_s_ = scan->frequency_chz > 0 ? std::min(kMostTurnS, 100.0 / scan->frequency_chz) : kMostTurnS;
       (void)device_clock_.heard(scan->sent_us, arrival_);
       watch(scan->status_low);
+      scans.push_back(*scan);
+      if (scans.size() < kRhythm) continue;
+      readRhythm(scans);
       return {};
     }
     clock_.sleepFor(durationOf(0.002));
   }
+  readRhythm(scans);
+  if (!scans.empty()) return {};
   return lost({"the scanner answers and sends no scans", name_, "switch it off and on"});
 }
 
@@ -291,6 +317,7 @@ Result<LineTaken> ColaScannerUnit::lineOf(const cola::Scan& scan) {
   const Duration age = device_clock_.between(scan.measured_us, scan.sent_us);
   line.measured.from = line.measured.to - durationOf(turn_s_ + settings_.latency_s) -
                        (age < durationOf(1.0) ? age : Duration(0));
+  if (period_s_ > 0.0) line.measured.spare = age - durationOf(turn_s_);
   const std::size_t count = distances->values.size();
   line.range_m.resize(count, 0.0F);
   line.code.resize(count, cell_code::kNoReturn);

@@ -34,6 +34,10 @@ class ColaScannerUnit : public ScannerUnit {
   int columns() const override { return columns_; }
   double azimuthStart() const override { return azimuth_start_rad_; }
   double azimuthStep() const override { return azimuth_step_rad_; }
+  // Known where its stamps make sense; without them it is captured line by line.
+  double lineDuration() const override { return period_s_ > 0.0 ? turn_s_ : 0.0; }
+  double turnDuration() const override { return turn_s_; }
+  double linePeriod() const override { return period_s_; }
   Result<std::optional<ScannerEvent>> poll() override;
   Status release() override;
   std::vector<std::string> takeWarnings() override;
@@ -60,6 +64,7 @@ class ColaScannerUnit : public ScannerUnit {
   Result<std::optional<int>> state(const JobControl& job);
   Result<cola::ScanSetting> setting(const JobControl& job);
   Status awaitFirstScan(const JobControl& job);
+  void readRhythm(const std::vector<cola::Scan>& scans);
   Status receive();
   Result<LineTaken> lineOf(const cola::Scan& scan);
   void watch(std::uint32_t device_status);
@@ -76,6 +81,7 @@ class ColaScannerUnit : public ScannerUnit {
   Instant arrival_{};  // of the bytes that came last
   DeviceClock device_clock_{1e-6, 32};
   double turn_s_ = 0.04;
+  double period_s_ = 0.0;  // from line to line, whole turns; 0: its stamps do not tell
   int columns_ = 0;
   double azimuth_start_rad_ = 0.0, azimuth_step_rad_ = 0.0;
   std::optional<ScannerEvent> held_;

@@ -18,6 +18,12 @@ constexpr int kNetworkBaud = 1'000'000;  // a channel that is faster has no rate
 constexpr double kUnit = 0.001;
 // From a scan's last beam until it is sent: not told anywhere, taken to be a turn at most.
 constexpr double kTurnsBefore = 2.0;
+constexpr int kClockReadings = 6;
+constexpr double kClockOffS = 0.008;  // its clock must be known as well as this
+// So long after it was read the clocks have not drifted apart; by then the shortest way of a scan is known.
+constexpr double kClockHoldsS = 2.0;
+constexpr double kRhythmS = 1.5;
+constexpr std::size_t kRhythm = 4;  // scans that are looked at for it
 
 }  // namespace
 
@@ -136,6 +142,67 @@ Status ScipScannerUnit::connect(const JobControl& job) {
                               " Bd: check its supply and its cable, and that no other program uses it")});
 }
 
+// Asked what its clock shows, it answers at an instant between question and answer; of several such intervals
+// the part that they share is left. Scanners that do not know the question are none the worse.
+Status ScipScannerUnit::readClock(const JobControl& job) {
+  clock_reading_.reset();
+  auto adjusting = ask("TM0", job, kProbeS);
+  if (!adjusting) return fail(adjusting.error());
+  if (!*adjusting || (*adjusting)->status != "00") return {};
+  const Duration tick = durationOf(kUnit);
+  std::optional<std::uint32_t> first;
+  Instant earliest = Instant::min(), latest = kNever;  // of the first reading
+  for (int k = 0; k < kClockReadings; ++k) {
+    const Instant asked = clock_.now() + channel_->line().wireTime(4);
+    const auto reply = ask("TM1", job, kProbeS);
+    if (!reply) return fail(reply.error());
+    if (!*reply || (*reply)->status != "00" || (*reply)->lines.empty()) continue;
+    const std::string& text = (*reply)->lines.front();
+    if (text.size() != 5 || checkCharacter(text.substr(0, 4)) != text[4]) continue;
+    const auto shown = decodeNumber(std::string_view(text).substr(0, 4));
+    if (!shown) continue;
+    if (!first) first = *shown;
+    // It showed so much at some instant of the tick that follows.
+    const Duration since = device_clock_.between(*first, *shown);
+    const Instant from = asked - since - tick, to = arrival_ - since;
+    earliest = std::max(earliest, from);
+    latest = std::min(latest, to);
+    clock_.sleepFor(durationOf(0.0013));  // at another part of the tick
+  }
+  if (const auto ended = ask("TM2", job, kAnswerS); !ended) return fail(ended.error());
+  if (!first || latest < earliest || latest - earliest > 2 * durationOf(kClockOffS)) return {};
+  clock_reading_ = Reading{earliest + (latest - earliest) / 2, *first};
+  return {};
+}
+
+// From scan to scan are whole turns.
+Status ScipScannerUnit::readRhythm(const JobControl& job) {
+  period_s_ = 0.0;
+  if (!clock_reading_) return {};
+  std::vector<std::uint32_t> stamps;
+  const Instant end = clock_.now() + durationOf(kRhythmS);
+  while (stamps.size() < kRhythm && clock_.now() < end) {
+    if (job.stopRequested()) return fail(kCancelled, name_, "start it again");
+    if (Status status = receive(); !status) return status;
+    for (const auto& item : std::exchange(items_, {})) {
+      const auto* reply = std::get_if<Reply>(&item);
+      if (!reply || reply->echo != encodeOrder(order_) || reply->status != "99") continue;
+      if (const auto data = parseScan(reply->lines, order_)) {
+        stamps.push_back(data->time_ms);
+        (void)timesOf(data->time_ms);
+      }
+    }
+    clock_.sleepFor(durationOf(0.002));
+  }
+  double shortest_s = kRhythmS;
+  for (std::size_t k = 1; k < stamps.size(); ++k)
+    shortest_s = std::min(shortest_s, secondsOf(device_clock_.between(stamps[k - 1], stamps[k])));
+  const double turns = std::round(shortest_s / turnDuration());
+  if (stamps.size() >= 2 && turns >= 1.0 && std::abs(shortest_s - turns * turnDuration()) < 2.0 * kUnit)
+    period_s_ = turns * turnDuration();
+  return {};
+}
+
 Status ScipScannerUnit::prepare(const JobControl& job) {
   if (streaming_) return {};
   job.tell(-1.0, "looking for the scanner");
@@ -149,6 +216,8 @@ Status ScipScannerUnit::prepare(const JobControl& job) {
   parameters_ = *parameters;
   const std::string product = property(*version, "PROD");
   name_ = (product.empty() ? parameters_.model : product) + " at " + channel_->name();
+  period_s_ = 0.0;
+  if (Status status = readClock(job); !status) return status;
   // 02: it is on already.
   const auto laser = demand("BM", job);
   if (!laser) return fail(laser.error());
@@ -163,6 +232,7 @@ Status ScipScannerUnit::prepare(const JobControl& job) {
     return lost({"the scanner sends no scans: " + statusText(begun->status), name_,
                  settings_.intensities ? "it may have no intensities: leave intensity away"
                                        : "switch it off and on"});
+  if (Status status = readRhythm(job); !status) return status;
   streaming_ = true;
   return {};
 }
@@ -187,8 +257,14 @@ Result<ScipScannerUnit::Identity> ScipScannerUnit::identify(const JobControl& jo
 // nothing.)
 LineTimes ScipScannerUnit::timesOf(std::uint32_t time_ms) {
   const Instant to = device_clock_.heard(time_ms, arrival_);
-  const double turn_s = 60.0 / parameters_.rpm;
-  return {to - durationOf(kTurnsBefore * turn_s + settings_.latency_s), to};
+  LineTimes times{to - durationOf(kTurnsBefore * turnDuration() + settings_.latency_s), to};
+  if (clock_reading_) {
+    const Instant first_beam = clock_reading_->at + device_clock_.between(clock_reading_->time_ms, time_ms);
+    // Later the clocks may have drifted apart; how long a scan takes to arrive has not changed.
+    if (arrival_ - clock_reading_->at < durationOf(kClockHoldsS)) lag_ = to - first_beam;
+    times.spare = lag_ - durationOf(turnDuration());
+  }
+  return times;
 }
 
 // The first three lines of a scan that is on its way: command, status, time stamp.

@@ -32,6 +32,10 @@ class ScipScannerUnit : public ScannerUnit {
   int columns() const override { return parameters_.columns(); }
   double azimuthStart() const override { return parameters_.azimuthStart(); }
   double azimuthStep() const override { return parameters_.azimuthStep(); }
+  // Known where the scanner's clock could be read well enough; else it is captured line by line.
+  double lineDuration() const override { return period_s_ > 0.0 ? turnDuration() : 0.0; }
+  double turnDuration() const override { return parameters_.rpm > 0 ? 60.0 / parameters_.rpm : 0.0; }
+  double linePeriod() const override { return period_s_; }
   Result<std::optional<ScannerEvent>> poll() override;
   Status release() override;
   std::vector<std::string> takeWarnings() override;
@@ -56,6 +60,8 @@ class ScipScannerUnit : public ScannerUnit {
   Result<scip::Reply> demand(const std::string& command, const JobControl& job);
   Result<scip::Properties> properties(const std::string& command, const JobControl& job);
   Status receive();
+  Status readClock(const JobControl& job);
+  Status readRhythm(const JobControl& job);
   LineTimes timesOf(std::uint32_t time_ms);
   std::optional<ScannerEvent> beginning();
   Result<std::optional<ScannerEvent>> whole(const scip::Reply& reply);
@@ -75,6 +81,14 @@ class ScipScannerUnit : public ScannerUnit {
   Instant arrival_{};  // of the bytes that came last
   LineTimes times_;    // of the one that was announced
   DeviceClock device_clock_{1e-3, 24};
+  // When its clock showed what, as it told on request; nothing where it did not or not well enough.
+  struct Reading {
+    Instant at;
+    std::uint32_t time_ms;
+  };
+  std::optional<Reading> clock_reading_;
+  Duration lag_{};         // from a scan's first beam to when device_clock_ has it
+  double period_s_ = 0.0;  // from line to line, whole turns; 0: the instants of its beams are not known
   std::optional<ScannerEvent> held_;
 };
 

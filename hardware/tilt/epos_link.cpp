@@ -41,6 +41,8 @@ void EposLink::begin(const EposRequest& request) {
 
 Status EposLink::send(std::span<const Byte> bytes, Step next, double limit_s) {
   step_ = next;
+  if (next == Step::Taken || next == Step::Answer)
+    sent_at_ = clock_.now() + channel_.line().wireTime(bytes.size());
   deadline_ = clock_.now() + channel_.line().wireTime(bytes.size()) + durationOf(limit_s);
   return channel_.write(bytes);
 }

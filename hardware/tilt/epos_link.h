@@ -33,6 +33,8 @@ class EposLink {
   // the caller knows better how to say it).
   Result<std::optional<EposAnswer>> poll();
 
+  // When the last request that was answered had reached the controller.
+  Instant sentAt() const { return sent_at_; }
   // Since the last call something was repeated, late or garbled: what was answered may be an older answer.
   bool takeIrregular() { return std::exchange(irregular_, false); }
 
@@ -62,7 +64,7 @@ class EposLink {
   ByteVector frame_;
   int tries_ = 0;
   bool irregular_ = false;
-  Instant deadline_{};
+  Instant deadline_{}, sent_at_{};
   Instant clear_{};  // nothing of earlier tries comes after it
   EposBodyReader body_;
   EposStreamReader stream_;

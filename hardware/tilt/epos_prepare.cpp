@@ -169,6 +169,7 @@ Status EposUnit::home(const JobControl& job) {
 
 Status EposUnit::setProfile(const JobControl& job) {
   const auto acceleration = static_cast<std::int64_t>(rpm(drive_.acceleration * 1000.0));
+  speed_told_ = rpm(drive_.speed);
   for (const auto& [index, value] :
        {std::pair{kSpeed, static_cast<std::int64_t>(rpm(drive_.speed))}, std::pair{kSpeedUp, acceleration},
         std::pair{kSlowDown, acceleration}, std::pair{kProfileType, std::int64_t{0}}})
@@ -207,6 +208,7 @@ Status EposUnit::prepare(const JobControl& job) {
   (void)link_.takeIrregular();
   irregular_ = false;
   attempts_ = 0;
+  steady_known_ = false;
   phase_ = Phase::Still;
   ready_ = true;
   reading_ = {drive_.angleOf(position_), position_, clock_.now() + durationOf(drive_.settle_s)};

@@ -105,6 +105,11 @@ Status EposUnit::checkAngle(double angle_rad) const {
 
 void EposUnit::plan() {
   using Kind = Step::Kind;
+  // A steady move may have left another one.
+  if (speed_told_ != rpm(drive_.speed)) {
+    speed_told_ = rpm(drive_.speed);
+    steps_.push_back({Kind::Write, writing(kSpeed, 0, static_cast<std::int64_t>(speed_told_))});
+  }
   std::int64_t from = position_;
   double longest_s = 0.0;
   for (const std::int64_t station : segmentsOf(drive_, position_, target_)) {
@@ -132,6 +137,7 @@ Status EposUnit::moveTo(double angle_rad) {
   attempts_ = 0;
   only_reading_ = false;
   irregular_ = false;
+  steady_known_ = false;
   if (phase_ == Phase::Still) {
     plan();
   } else {
@@ -169,6 +175,8 @@ Result<bool> EposUnit::watched(const Step& step, std::uint32_t status) {
               name_, "see whether something blocks it; going on with the capture searches home again"})
             .error());
   look_again_ = clock_.now() + durationOf(kLookS);
+  if (phase_ == Phase::Gliding && step.kind == Step::Kind::AwaitReached)
+    steps_.push_front({Step::Kind::ReadOnTheWay, reading(kPosition)});
   return false;
 }
 
@@ -176,6 +184,12 @@ Result<bool> EposUnit::completed(const Step& step, const EposAnswer& answer) {
   const std::uint32_t value = answer.value.value_or(0);
   switch (step.kind) {
     case Step::Kind::Write:
+      return true;
+    case Step::Kind::Begin:
+      if (steady_) steady_->start = link_.sentAt();
+      return true;
+    case Step::Kind::ReadOnTheWay:
+      on_the_way_.push_back({link_.sentAt(), static_cast<std::int32_t>(value)});
       return true;
     case Step::Kind::AwaitTaken:
     case Step::Kind::AwaitReached:
@@ -209,7 +223,7 @@ Result<bool> EposUnit::advance() {
     if (!through) return fail(through.error());
     if (!*through) continue;
     if (step.kind == Step::Kind::AwaitReached) ended_ = clock_.now();
-    waiting_until_.reset();
+    if (step.kind != Step::Kind::ReadOnTheWay) waiting_until_.reset();
     if (!steps_.empty()) steps_.pop_front();
   }
   return true;
@@ -233,6 +247,7 @@ Status EposUnit::arrivedOrAgain(bool& there) {
   const bool same = again && std::abs(now_at - reading_.counts) <= 2;
   const double off = std::abs(drive_.angleOf(now_at) - drive_.angleOf(target_));
   reading_.counts = now_at;
+  if (phase_ == Phase::Gliding && !irregular_ && off <= drive_.tolerance_rad) settleSteady();
   if (off <= drive_.tolerance_rad && (!irregular_ || same)) {
     reading_ = {drive_.angleOf(now_at), now_at,
                 (irregular_ ? clock_.now() : ended_) + durationOf(drive_.settle_s)};

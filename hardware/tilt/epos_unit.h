@@ -6,6 +6,7 @@
 
 #include <deque>
 #include <memory>
+#include <vector>
 
 #include "hardware/tilt/epos_link.h"
 #include "hardware/tilt/tilt_unit.h"
@@ -37,6 +38,12 @@ class EposUnit : public TiltUnit {
   Result<std::optional<TiltReading>> poll() override;
   // Beside sending nothing further, tells a motor that moves to halt.
   void stop() override;
+  SteadySpeed steadySpeed(double wished_rad_s) const override;
+  Status moveSteadily(double angle_rad, double rate_rad_s) override;
+  double steadyDelay() const override;
+  std::optional<SteadyMotion> steadyMotion() const override {
+    return phase_ == Phase::Still && steady_known_ ? steady_ : std::nullopt;
+  }
   Status release() override;
   Status findWhereItStands() override;
   std::vector<InstrumentFact> facts() const override;
@@ -56,11 +63,16 @@ class EposUnit : public TiltUnit {
  private:
   // What a move consists of.
   struct Step {
-    enum class Kind { Write, AwaitTaken, AwaitReached, ReadPosition, ReadError } kind;
+    // Begin: the write that starts a steady move. ReadOnTheWay: where it is meanwhile.
+    enum class Kind { Write, Begin, AwaitTaken, AwaitReached, ReadPosition, ReadOnTheWay, ReadError } kind;
     EposRequest request;
     double limit_s = 0.0;  // of waiting
   };
-  enum class Phase { Idle, Moving, Reading, Checking, Still, Lost };
+  enum class Phase { Idle, Moving, Gliding, Reading, Checking, Still, Lost };
+  struct Told {
+    Instant at;
+    std::int64_t counts;
+  };
 
   EposRequest reading(std::uint16_t index, Byte sub = 0) const;
   EposRequest writing(std::uint16_t index, Byte sub, std::int64_t value) const;
@@ -76,6 +88,8 @@ class EposUnit : public TiltUnit {
   Result<bool> watched(const Step& step, std::uint32_t status);
   Status arrivedOrAgain(bool& there);
   void plan();
+  void settleSteady();
+  double countsPerMs(double rpm_told) const;
   Status lost(Error error);
   Status troubled(const EposRequest& request, std::uint32_t abort);
   Error silent() const;
@@ -103,6 +117,11 @@ class EposUnit : public TiltUnit {
   Instant ended_{};
   Instant move_deadline_{};
   TiltReading reading_;
+
+  double speed_told_ = 0.0;             // revolutions a minute, in profile moves
+  std::optional<SteadyMotion> steady_;  // under way, or the last one
+  bool steady_known_ = false;           // it is over, and was as it should have been
+  std::vector<Told> on_the_way_;
 };
 
 }  // namespace tiltmap

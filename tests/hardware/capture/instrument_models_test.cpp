@@ -236,7 +236,8 @@ TEST_F(ModelsTest, FaultsOfTheTiltUnitLoseNothing) {
 
 // Through the real serial port class, the emulators on a thread of their own, both plugs pulled.
 TEST_F(ModelsTest, AnEposOverPseudoTerminals) {
-  make("epos", 16, 1.0);  // many and slow: a busy machine finds some of them waiting when the plugs are out already
+  make("epos", 16,
+       1.0);  // many and slow: a busy machine finds some of them waiting when the plugs are out already
   after_ = [&](int row) {
     if (row == 1) bench_->unplug();
   };
