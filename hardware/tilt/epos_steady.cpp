@@ -9,6 +9,7 @@
 
 #include "core/base/ranks.h"
 #include "core/base/text.h"
+#include "core/geometry/pose.h"
 #include "hardware/tilt/cia402.h"
 #include "hardware/tilt/epos_unit.h"
 

@@ -45,6 +45,7 @@ class CaptureModel : public QObject {
   StationState state() const { return now_.state; }
   QString title() const;     // of the state
   QString sentence() const;  // what goes on, or what happened and what to do
+  QString trouble() const;   // that an instrument tells of itself: "window: dirty, wipe it"; empty for none
   bool isConnected() const;  // commands to the tilt make sense
   bool isBusy() const;       // connecting, moving, scanning, reconnecting
   bool isSweeping() const;   // a sweep's job is not over

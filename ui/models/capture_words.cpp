@@ -43,7 +43,7 @@ QString stationStateTitle(StationState state) {
     case StationState::Scanning:
       return "Scanning";
     case StationState::Reconnecting:
-      return "An instrument is lost";
+      return "Instrument lost";
     case StationState::Fault:
       return "Fault";
     case StationState::Verdict:
@@ -57,6 +57,13 @@ QString CaptureModel::title() const {
     return captureLightName(verdict_->judgement()->light);
   if (isSweeping() && !isBusy()) return "Waiting";
   return stationStateTitle(state());
+}
+
+QString CaptureModel::trouble() const {
+  for (const StationInstrument* instrument : {&now_.scanner, &now_.tilt})
+    for (const InstrumentFact& fact : instrument->facts)
+      if (fact.trouble) return qt(fact.name) + ": " + qt(fact.value);
+  return {};
 }
 
 QString CaptureModel::sentence() const {
@@ -73,6 +80,7 @@ QString CaptureModel::sentence() const {
     case StationState::Ready:
       if (isSweeping()) return "The sweep begins when the work before it is done.";
       if (!now_.doing.empty()) return capitalised(qt(now_.doing)) + ".";
+      if (const QString wrong = trouble(); !wrong.isEmpty()) return capitalised(wrong) + ".";
       return now_.tilt_rad ? "Both instruments are there. The tilt stands at " + tiltText() + "."
                            : QString("Both instruments are there.");
     case StationState::Moving:

@@ -17,10 +17,11 @@ CaptureBanner::CaptureBanner(CaptureModel& model, const Theme& theme, QWidget* p
       title_(new QLabel(this)),
       sentence_(wrappedLabel(this, "capture-sentence")) {
   setObjectName("capture-banner");
-  setAutoFillBackground(true);
+  setAttribute(Qt::WA_StyledBackground);
   sign_->setObjectName("capture-sign");
   title_->setObjectName("capture-title");
   title_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+  title_->setWordWrap(true);
   sign_->setAlignment(Qt::AlignCenter);
   auto* grid = new QGridLayout(this);
   grid->setContentsMargins(8, 8, 8, 8);
@@ -47,7 +48,7 @@ CaptureBanner::Kind CaptureBanner::kind() const {
     case StationState::Idle:
       return Kind::Quiet;
     case StationState::Ready:
-      return model_.now().error ? Kind::Warning : Kind::Good;
+      return model_.now().error || !model_.trouble().isEmpty() ? Kind::Warning : Kind::Good;
     case StationState::Reconnecting:
       return Kind::Warning;
     case StationState::Fault:
@@ -68,7 +69,7 @@ QString CaptureBanner::sign() const {
     case StationState::Connecting:
       return "…";
     case StationState::Ready:
-      return model_.now().error ? "!" : "✓";
+      return model_.now().error || !model_.trouble().isEmpty() ? "!" : "✓";
     case StationState::Moving:
       return "↕";
     case StationState::Scanning:
@@ -95,11 +96,11 @@ QString CaptureBanner::sign() const {
 
 void CaptureBanner::refresh() {
   const ThemeColours& colours = theme_.colours();
-  QPalette ground = palette();
+  const QPalette look = Theme::palette(theme_.look());
   QColor back = colours.note_ground, mark = colours.accent;
   switch (kind()) {
     case Kind::Quiet:
-      back = Theme::palette(theme_.look()).color(QPalette::AlternateBase);
+      back = look.color(QPalette::AlternateBase);
       mark = colours.muted;
       break;
     case Kind::Good:
@@ -116,20 +117,18 @@ void CaptureBanner::refresh() {
       mark = colours.error;
       break;
   }
-  const QPalette now = Theme::palette(theme_.look());
-  ground.setColor(QPalette::Window, back);
-  ground.setColor(QPalette::WindowText, now.color(QPalette::WindowText));
-  setPalette(ground);
+  // A style sheet and no palette: see setTextColour().
+  const QString sheet = QString(
+                            "#capture-banner { background: %1; border: none; }"
+                            "#capture-sentence { color: %2; }"
+                            "#capture-sign, #capture-title { color: %3; }")
+                            .arg(back.name(), look.color(QPalette::WindowText).name(), mark.name());
+  if (styleSheet() != sheet) setStyleSheet(sheet);
   QFont large = font();
   large.setPointSizeF(1.6 * font().pointSizeF());
   large.setBold(true);
-  QPalette marked = ground;
-  marked.setColor(QPalette::WindowText, mark);
-  for (QLabel* label : {sign_, title_}) {
-    label->setFont(large);
-    label->setPalette(marked);
-  }
-  sentence_->setPalette(ground);
+  for (QLabel* label : {sign_, title_})
+    if (label->font() != large) label->setFont(large);
   sign_->setMinimumWidth(sign_->fontMetrics().horizontalAdvance("→←"));
   sign_->setText(sign());
   title_->setText(model_.title());

@@ -30,6 +30,7 @@ QFormLayout* formOf(QWidget* page) {
   form->setSpacing(8);
   form->setRowWrapPolicy(QFormLayout::WrapLongRows);
   form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+  form->setLabelAlignment(Qt::AlignLeft | Qt::AlignVCenter);
   return form;
 }
 
@@ -65,6 +66,7 @@ CaptureConnectPage::CaptureConnectPage(CaptureModel& model, const PanelContext& 
   pages_->addWidget(buildNamed());
   pages_->addWidget(buildEmulator());
   pages_->addWidget(buildRecording());
+  faults_ = buildFaults();
   instruments_->setTextFormat(Qt::RichText);
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(8, 8, 8, 8);
@@ -72,6 +74,7 @@ CaptureConnectPage::CaptureConnectPage(CaptureModel& model, const PanelContext& 
   column->addWidget(source_);
   column->addWidget(pages_);
   column->addWidget(connect_);
+  column->addWidget(faults_);
   column->addWidget(instruments_);
   column->addStretch(1);
 
@@ -155,14 +158,6 @@ QWidget* CaptureConnectPage::buildEmulator() {
   speed_->setDecimals(1);
   speed_->setValue(1.0);
   speed_->setSuffix(" ×");
-  fault_ = new QComboBox(page);
-  describe(fault_, "capture-fault", "Fault", "What is to go wrong with the emulated instruments");
-  fault_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  fault_->setMinimumContentsLength(8);
-  order_ = new QPushButton("Make it happen", page);
-  describe(order_, "capture-order-fault", "Make the fault happen",
-           "Order the fault of the emulated instruments, to see what happens and what helps");
-  connect(order_, &QPushButton::clicked, this, &CaptureConnectPage::order);
   form->addRow("&Drive", drive_);
   auto* row = new QHBoxLayout;
   row->setSpacing(8);
@@ -174,13 +169,28 @@ QWidget* CaptureConnectPage::buildEmulator() {
   auto* seed_label = new QLabel("S&eed", page);
   seed_label->setBuddy(seed_);
   form->addRow(seed_label, row);
-  auto* faults = new QHBoxLayout;
-  faults->setSpacing(8);
-  faults->addWidget(fault_, 1);
-  faults->addWidget(order_);
-  auto* fault_label = new QLabel("&Fault", page);
-  fault_label->setBuddy(fault_);
-  form->addRow(fault_label, faults);
+  return page;
+}
+
+// Of emulated instruments that are there.
+QWidget* CaptureConnectPage::buildFaults() {
+  auto* page = new QWidget(this);
+  fault_ = new QComboBox(page);
+  describe(fault_, "capture-fault", "Fault", "What is to go wrong with the emulated instruments");
+  fault_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  fault_->setMinimumContentsLength(8);
+  order_ = new QPushButton("Make it happen", page);
+  describe(order_, "capture-order-fault", "Make the fault happen",
+           "Order the fault of the emulated instruments, to see what happens and what helps");
+  connect(order_, &QPushButton::clicked, this, &CaptureConnectPage::order);
+  auto* row = new QHBoxLayout(page);
+  row->setContentsMargins(0, 0, 0, 0);
+  row->setSpacing(8);
+  auto* label = new QLabel("&Fault", page);
+  label->setBuddy(fault_);
+  row->addWidget(label);
+  row->addWidget(fault_, 1);
+  row->addWidget(order_);
   return page;
 }
 
@@ -266,6 +276,9 @@ void CaptureConnectPage::refresh() {
   connect_->setAccessibleName(connect_->text());
   connect_->setEnabled(apart || model_.isConnected());
   source_->setEnabled(apart);
+  // Where they are is settled then; who they are and how they are needs the room.
+  source_->setVisible(apart);
+  pages_->setVisible(apart);
   for (QWidget* widget :
        {static_cast<QWidget*>(tilt_options_), static_cast<QWidget*>(network_),
         static_cast<QWidget*>(scanner_), static_cast<QWidget*>(tilt_), static_cast<QWidget*>(drive_),
@@ -277,8 +290,7 @@ void CaptureConnectPage::refresh() {
     fault_->clear();
     fault_->addItems(faults);
   }
-  fault_->setEnabled(!faults.isEmpty());
-  order_->setEnabled(!faults.isEmpty());
+  faults_->setVisible(!faults.isEmpty());
   const StationSnapshot& now = model_.now();
   QString text = factsText(now.scanner) + factsText(now.tilt);
   for (const std::string& warning : now.warnings) text += "<p>! " + qt(warning).toHtmlEscaped() + "</p>";

@@ -34,6 +34,7 @@ class CaptureConnectPage : public QWidget {
   QWidget* buildNamed();
   QWidget* buildEmulator();
   QWidget* buildRecording();
+  QWidget* buildFaults();
   QLineEdit* line(const QString& name, const QString& accessible, const QString& tip,
                   const QString& placeholder);
   Source source() const;
@@ -49,6 +50,7 @@ class CaptureConnectPage : public QWidget {
   QComboBox* drive_ = nullptr;
   QSpinBox* seed_ = nullptr;
   QDoubleSpinBox* speed_ = nullptr;
+  QWidget* faults_ = nullptr;  // to be ordered, of emulated instruments that are there
   QComboBox* fault_ = nullptr;
   QPushButton* order_ = nullptr;
   QLineEdit *scanner_file_ = nullptr, *tilt_file_ = nullptr;

@@ -35,7 +35,7 @@ class CaptureStopPage : public QWidget {
   OdometryForm* odometry_;
   QLabel* own_;        // of drives that bring their own odometry
   QLabel* known_rig_;  // what it takes over from stops before
-  int captured_ = 0;  // number of the last sweep that became a stop
+  int captured_ = 0;   // number of the last sweep that became a stop
 };
 
 }  // namespace tiltmap::ui

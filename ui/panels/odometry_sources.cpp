@@ -9,6 +9,7 @@
 
 #include "core/base/text.h"
 #include "core/geometry/body_axes.h"
+#include "ui/look/text_colour.h"
 #include "ui/look/theme.h"
 #include "ui/models/preferences.h"
 #include "ui/models/strings.h"
@@ -349,11 +350,9 @@ void FeedOdometryPage::refresh() {
   take_->setEnabled(fresh && !first_);
   here_->setEnabled(fresh && !first_);
   state_->say(status_ ? qt(feedText(*status_)) : QString("Not connected."));
-  QPalette colours = palette();
   const bool wrong =
       status_ && (status_->state == FeedState::Silent || status_->connection_error.has_value());
-  if (wrong) colours.setColor(QPalette::WindowText, theme_.colours().error);
-  state_->setPalette(colours);
+  setTextColour(state_, wrong ? theme_.colours().error : QColor());
   QString text;
   if (status_ && status_->latest)
     text = "Latest: " + poseText(*status_->latest) + ", stamp " + qt(fixedReal(status_->latest->stamp_s, 2));

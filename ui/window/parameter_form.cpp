@@ -5,6 +5,7 @@
 #include <QToolButton>
 
 #include "ui/look/icons.h"
+#include "ui/look/text_colour.h"
 #include "ui/look/theme.h"
 #include "ui/models/parameter_model.h"
 #include "ui/models/strings.h"
@@ -67,9 +68,7 @@ void ParameterForm::refresh(const QString& parameter) {
   editor->show(model_.valueText(parameter));
   const auto error = model_.error(parameter);
   editor->setWrong(error.has_value());
-  QPalette colours = palette();
-  colours.setColor(QPalette::WindowText, theme_.colours().error);
-  row.error->setPalette(colours);
+  if (error) setTextColour(row.error, theme_.colours().error);
   row.error->setText(error ? QString("%1: %2").arg(qt(error->what), qt(error->remedy)) : QString());
   row.error->setVisible(error.has_value() && row.editor->isVisibleTo(this));
   const bool changed = model_.isChanged(parameter);

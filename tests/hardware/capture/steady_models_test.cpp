@@ -12,6 +12,8 @@
 namespace tiltmap {
 namespace {
 
+constexpr int kToTell = 20;
+
 struct Rig {
   const char* scanner;
   const char* tilt;
@@ -78,7 +80,7 @@ class SteadyModels : public ::testing::TestWithParam<Rig> {
         ++compared;
         alike += std::abs(sent.range_m[j] - line.range_m[j]) < 0.0005F ? 1 : 0;
       }
-      return compared > 20 && alike == compared;
+      return compared > kToTell && alike == compared;
     };
     const auto found = std::ranges::find_if(sent_, same);
     return found == sent_.end() ? nullptr : &*found;
@@ -87,6 +89,9 @@ class SteadyModels : public ::testing::TestWithParam<Rig> {
   std::pair<double, double> worst() {
     double with = 0.0, without = 0.0;
     for (const auto& [row, line] : lines_) {
+      // Where hardly a beam meets anything (the URG reaches 4 m) lines cannot be told apart.
+      if (std::ranges::count(line.code, cell_code::kMeasured) <= kToTell) continue;
+      ++told_;
       const Sent* sent = sentAs(line);
       EXPECT_NE(sent, nullptr) << "row " << row << " was never sent so";
       if (!sent) continue;
@@ -110,6 +115,7 @@ class SteadyModels : public ::testing::TestWithParam<Rig> {
   ScannerGeometry geometry_;
   std::map<int, ScanLine> lines_;
   std::vector<Sent> sent_;
+  int told_ = 0;
 };
 
 TEST_P(SteadyModels, AWholeScanHasEveryBeamAtItsOwnTilt) {
@@ -121,6 +127,7 @@ TEST_P(SteadyModels, AWholeScanHasEveryBeamAtItsOwnTilt) {
   EXPECT_TRUE(report->warnings.empty()) << report->warnings.front();
   EXPECT_LT(report->duration_s, GetParam().most_s) << "emulated time";
   const auto [with, without] = worst();
+  EXPECT_GT(told_, 40) << "lines that were compared";
   EXPECT_LT(with, GetParam().most_off_deg);
   std::cout << GetParam().scanner << " on " << GetParam().tilt << ": " << report->duration_s
             << " s; beams at most " << with << " deg off, " << without

@@ -2,12 +2,14 @@
 #include <QComboBox>
 #include <QLineEdit>
 #include <QTabWidget>
+#include <mutex>
+#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "hardware/emulator/terminal_rig.h"
 #include "tests/support/feed_server.h"
-#include "tests/ui/support/window_fixture.h"
+#include "tests/ui/support/state_picture.h"
 #include "ui/models/capture_model.h"
 #include "ui/panels/capture_banner.h"
 #include "ui/panels/capture_connect_page.h"
@@ -49,12 +51,28 @@ class CaptureFeedTest : public WindowTest {
     find<QTabWidget>("capture-tabs")->setCurrentIndex(index);
     settle();
   }
-  // The vehicle says where it is, and the form has heard it.
-  void vehicleAt(double stamp_s, double x_m, double y_m) {
-    server.send(FeedServer::line(stamp_s, x_m, y_m));
-    const QString stamp = QString("stamp %1").arg(stamp_s, 0, 'f', 2);
-    ASSERT_TRUE(waitUntil([&] { return find<QLabel>("odometry-feed-pose")->text().contains(stamp); }))
+  // The vehicle stands there from now on, and the form has heard it.
+  void vehicleAt(double x_m, double y_m) {
+    {
+      const std::lock_guard lock(mutex);
+      x = x_m, y = y_m;
+    }
+    if (!vehicle.joinable())
+      vehicle = std::jthread([this](const std::stop_token& stop) {
+        for (double stamp_s = 1.0; !stop.stop_requested(); stamp_s += 0.1) {
+          {
+            const std::lock_guard lock(mutex);
+            server.send(FeedServer::line(stamp_s, x, y));
+          }
+          std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        }
+      });
+    const QString there = QString("x %1").arg(x_m, 0, 'f', 2);
+    ASSERT_TRUE(waitUntil([&] { return find<QLabel>("odometry-feed-pose")->text().contains(there); }))
         << find<QLabel>("odometry-feed-state")->text().toStdString();
+  }
+  void take(const char* name) {
+    takePictures(*window, preferences, name, [this] { settle(); });
   }
   void captureStop(std::size_t number) {
     const int sweep = static_cast<int>(number);
@@ -71,6 +89,9 @@ class CaptureFeedTest : public WindowTest {
   RealClock clock;
   std::unique_ptr<TerminalRig> rig;
   FeedServer server;
+  std::mutex mutex;
+  double x = 0.0, y = 0.0;
+  std::jthread vehicle;
   ui::CapturePanel* panel = nullptr;
 };
 
@@ -83,7 +104,8 @@ TEST_F(CaptureFeedTest, FromStartToStoredStopsWithPosesOfTheFeed) {
   click("odometry-feed");
   type("odometry-feed-address", server.address().text());
   click("odometry-feed-connect");
-  vehicleAt(1.0, 5.0, 2.0);
+  vehicleAt(5.0, 2.0);
+  take("feed-first");
   captureStop(1);
 
   // The vehicle drives on, and nobody has said yet where the next stop is.
@@ -91,10 +113,11 @@ TEST_F(CaptureFeedTest, FromStartToStoredStopsWithPosesOfTheFeed) {
   ASSERT_TRUE(waitUntil([&] { return !find("capture-start")->isEnabled(); }));
   EXPECT_NE(find("capture-start")->toolTip().indexOf("taken"), -1)
       << find("capture-start")->toolTip().toStdString();
-  vehicleAt(2.0, 9.5, 1.0);
+  vehicleAt(9.5, 1.0);
   click("odometry-feed-take");
   EXPECT_NE(find<QLabel>("odometry-sentence")->text().indexOf("4.50 m forward"), -1)
       << find<QLabel>("odometry-sentence")->text().toStdString();
+  take("feed-taken");
   captureStop(2);
   const Pose step = snapshot().scans()[0].odometry().inverse() * snapshot().scans()[1].odometry();
   const PoseDifference off = difference(step, Pose::planar(1.0, 4.5, 0.0));
@@ -102,10 +125,16 @@ TEST_F(CaptureFeedTest, FromStartToStoredStopsWithPosesOfTheFeed) {
   EXPECT_LT(off.rotation_rad, 1e-6);
 
   // Without the feed there is no step; the stops stay.
+  vehicle = {};
   server.hangUp();
   ASSERT_TRUE(
       waitUntil([&] { return !find<QLabel>("odometry-feed-state")->text().startsWith("Receiving"); }));
   EXPECT_FALSE(find("capture-start")->isEnabled());
+  take("feed-lost");
+  for (const char* mode : {"odometry-typed", "odometry-nudged", "odometry-file"}) {
+    click(mode);
+    take(mode);
+  }
   EXPECT_EQ(snapshot().scans().size(), 2U);
 }
 

@@ -6,10 +6,10 @@
 #include <QProgressBar>
 #include <QPushButton>
 #include <QTabWidget>
-#include <cstdlib>
 
 #include <gtest/gtest.h>
 
+#include "tests/ui/support/state_picture.h"
 #include "tests/ui/support/widget_rules.h"
 #include "tests/ui/support/window_fixture.h"
 #include "ui/models/capture_model.h"
@@ -63,16 +63,8 @@ class CapturePanelTest : public WindowTest {
     settle();
   }
   bool isEnabled(const QString& name) { return find(name)->isEnabled(); }
-  // To be looked at: each state as a picture, where TILTMAP_PICTURES names a folder.
   void take(const char* name) {
-    const char* where = std::getenv("TILTMAP_PICTURES");
-    if (!where) return;
-    for (const bool dark : {true, false}) {
-      preferences.setTheme(dark ? ui::ThemeChoice::Dark : ui::ThemeChoice::Light);
-      settle();
-      const QString file = QString("%1/%2-%3.png").arg(where, name, dark ? "dark" : "light");
-      EXPECT_TRUE(window->grab().save(file));
-    }
+    takePictures(*window, preferences, name, [this] { settle(); });
   }
   void expectStopIsThere() {
     auto* stop = find<QPushButton>("capture-stop");
@@ -127,7 +119,7 @@ TEST_F(CapturePanelTest, AFaultSaysWhatToDoAndConnectingAgainHelps) {
   connected(1.0);
   model().order("silent");
   ASSERT_TRUE(comes(StationState::Reconnecting));
-  EXPECT_EQ(title(), "An instrument is lost");
+  EXPECT_EQ(title(), "Instrument lost");
   take("reconnecting");
   EXPECT_NE(sentence().indexOf("What to do"), -1);
   expectStopIsThere();
@@ -170,7 +162,8 @@ TEST_F(CapturePanelTest, StopInASweepKeepsTheLinesAndGoOnTakesTheRest) {
   EXPECT_LT(kept, 31);
   ASSERT_TRUE(waitUntil([&] { return find("capture-resume")->isVisible(); }));
   click("capture-resume");
-  ASSERT_TRUE(waitUntil([&] { return snapshot().scans()[0].lines == 31; })) << model().sentence().toStdString();
+  ASSERT_TRUE(waitUntil([&] { return snapshot().scans()[0].lines == 31; }))
+      << model().sentence().toStdString();
   ASSERT_TRUE(comes(StationState::Verdict));
   settle();
   EXPECT_FALSE(find("capture-resume")->isVisible());
@@ -187,7 +180,99 @@ TEST_F(CapturePanelTest, ADirtyWindowIsToldWhileItIsDirty) {
   click("capture-order-fault");
   ASSERT_TRUE(waitUntil([&] { return health().contains("! window: dirty, wipe it"); }))
       << health().toStdString();
+  EXPECT_NE(sentence().indexOf("dirty, wipe it"), -1) << "at arm's length, too";
   take("dirty");
+}
+
+// At arm's length the ground and the words' colour say it first.
+TEST_F(CapturePanelTest, TheBannerHasTheColoursOfItsStateInEveryLook) {
+  const auto isSeen = [&](const QColor& colour) {
+    const QImage image = panel->banner().grab().toImage();
+    int seen = 0;
+    for (int y = 0; y < image.height(); ++y)
+      for (int x = 0; x < image.width(); ++x) seen += image.pixelColor(x, y) == colour ? 1 : 0;
+    return seen;
+  };
+  const auto expectColours = [&](QColor ui::ThemeColours::*mark,
+                                 std::optional<QColor ui::ThemeColours::*> ground) {
+    for (const auto& [choice, look] : {std::pair{ui::ThemeChoice::Light, ui::Look::Light},
+                                       {ui::ThemeChoice::Dark, ui::Look::Dark},
+                                       {ui::ThemeChoice::HighContrast, ui::Look::HighContrast},
+                                       {ui::ThemeChoice::Light, ui::Look::Light}}) {
+      preferences.setTheme(choice);
+      settle();
+      const ui::ThemeColours colours = ui::Theme::coloursOf(look);
+      const QPalette palette = ui::Theme::palette(look);
+      const QColor behind = ground ? colours.*(*ground) : palette.color(QPalette::AlternateBase);
+      const QString where = title() + " in look " + QString::number(static_cast<int>(look));
+      EXPECT_EQ(panel->banner().grab().toImage().pixelColor(3, 3), behind) << where.toStdString();
+      EXPECT_GT(isSeen(colours.*mark), 20) << where.toStdString();
+      EXPECT_GT(isSeen(palette.color(QPalette::WindowText)), 20) << where.toStdString();
+    }
+  };
+  expectColours(&ui::ThemeColours::muted, std::nullopt);
+  connected();
+  expectColours(&ui::ThemeColours::good, &ui::ThemeColours::note_ground);
+  click("capture-start");
+  ASSERT_TRUE(comes(StationState::Verdict));
+  ASSERT_TRUE(waitUntil([&] { return model().verdict().judgement().has_value(); }));
+  settle();
+  ASSERT_EQ(title(), "Move on");
+  expectColours(&ui::ThemeColours::good, &ui::ThemeColours::note_ground);
+  // Nothing is seen any more: not to be called good.
+  ASSERT_TRUE(waitUntil([&] { return model().faults().contains("dazzled"); }));
+  model().order("dazzled");
+  click("capture-start");
+  ASSERT_TRUE(waitUntil([&] { return model().now().sweep.number == 2; }));
+  ASSERT_TRUE(comes(StationState::Verdict));
+  ASSERT_TRUE(waitUntil([&] { return model().verdict().judgement().has_value(); }));
+  settle();
+  take("rescan");
+  EXPECT_EQ(title(), "Rescan");
+  expectColours(&ui::ThemeColours::error, &ui::ThemeColours::error_ground);
+}
+
+// Who is connected and how they are is read without scrolling; how to reach them is settled.
+TEST_F(CapturePanelTest, IdentityAndHealthAreSeenOnceConnected) {
+  EXPECT_TRUE(find("capture-source")->isVisible());
+  EXPECT_FALSE(find("capture-order-fault")->isVisible()) << "there is nothing to go wrong yet";
+  connected();
+  EXPECT_FALSE(find("capture-source")->isVisible());
+  EXPECT_FALSE(find("capture-speed")->isVisible());
+  const auto* facts = find<QLabel>("capture-instruments");
+  EXPECT_FALSE(facts->visibleRegion().isEmpty());
+  EXPECT_GT(facts->visibleRegion().boundingRect().height(), 5 * facts->fontMetrics().height());
+  click("capture-connect");
+  ASSERT_TRUE(comes(StationState::Idle));
+  EXPECT_TRUE(find("capture-source")->isVisible());
+}
+
+TEST_F(CapturePanelTest, WhatTheNextStopTakesOverIsSaidAndCanBeLeftAway) {
+  connected();
+  show(2);
+  EXPECT_FALSE(find("capture-known-rig")->isVisible()) << "nothing is known yet";
+  click("capture-start");
+  ASSERT_TRUE(comes(StationState::Verdict));
+  ProjectEdit edit;
+  edit.title = "the body";
+  edit.steps.emplace_back(SetBodyMask{id(0), CellMask{24, 361, {{0, 100, 139}}}});
+  must(workspace().session().apply(edit));
+  settle();
+  const auto says = [&](const char* words) {
+    return waitUntil([&] {
+      const auto* label = find<QLabel>("capture-known-rig");
+      return label->isVisible() && label->text().startsWith(words) && label->text().contains("40 cells");
+    });
+  };
+  EXPECT_TRUE(says("Takes over")) << find<QLabel>("capture-known-rig")->text().toStdString();
+  take("takes-over");
+  model().parameters().setValue("known-rig", false);
+  EXPECT_TRUE(says("Leaves away"));
+  model().parameters().setValue("known-rig", true);
+  click("capture-start");
+  ASSERT_TRUE(waitUntil([&] { return model().now().sweep.number == 2; }));
+  ASSERT_TRUE(comes(StationState::Verdict));
+  EXPECT_EQ(must(snapshot().scans()[1].image())->code(0, 120), cell_code::kMasked);
 }
 
 // As slow as real instruments are: what a sweep looks like on its way.
