@@ -5,6 +5,7 @@
 #include <QElapsedTimer>
 #include <QMouseEvent>
 #include <QOpenGLWidget>
+#include <QTimer>
 #include <QWindow>
 #include <cmath>
 #include <cstdio>
@@ -232,6 +233,39 @@ Json start(const std::string& project, const std::filesystem::path& folder) {
   return result;
 }
 
+// How late the event loop serves a timer of 5 ms while the scanner says nothing more, until it is given up
+// and looked for, and while it is looked for: milliseconds, and of how many looks.
+Json latencyWhileSilent(ui::CaptureModel& model, const auto& until) {
+  constexpr double kEveryMs = 5.0, kLongMs = 8000.0;
+  Json result;
+  std::vector<double> late;
+  double last = nowMs();
+  QTimer timer;
+  timer.setTimerType(Qt::PreciseTimer);
+  QObject::connect(&timer, &QTimer::timeout, [&] {
+    const double now = nowMs();
+    late.push_back(std::max(0.0, now - last - kEveryMs));
+    last = now;
+  });
+  model.order("silent");
+  timer.start(static_cast<int>(kEveryMs));
+  last = nowMs();
+  const double begin = nowMs();
+  bool noticed = false;
+  (void)until([&] {
+    noticed = noticed || model.state() == StationState::Reconnecting;
+    return nowMs() - begin > kLongMs;
+  });
+  timer.stop();
+  if (late.empty()) return result;
+  std::sort(late.begin(), late.end());
+  result["noticed"] = noticed;
+  result["looks"] = late.size();
+  result["median_ms"] = late[late.size() / 2];
+  result["worst_ms"] = late.back();
+  return result;
+}
+
 // Stops captured in the window with emulated instruments, and how long each verdict took after its last line.
 Json verdicts(const std::filesystem::path& folder, int stops) {
   constexpr double kSpeed = 4.0, kPatienceMs = 120e3;
@@ -270,6 +304,7 @@ Json verdicts(const std::filesystem::path& folder, int stops) {
     result["lights"].push_back(ui::utf8(ui::captureLightName(judgement.light)));
   }
   if (!well) result["trouble"] = ui::utf8(model.title() + ": " + model.sentence());
+  if (well) result["silent"] = latencyWhileSilent(model, until);
   window->closeNow();
   delete window;
   std::filesystem::remove(folder / "verdict.tiltmap");

@@ -39,9 +39,10 @@ std::string formatted(const char* format, Values... values) {
   return text.data();
 }
 
-// Stops captured in the window, each with its verdict. False where one came later than 0.5 s.
+// Stops captured in the window, each with its verdict, and a silent instrument. False where a verdict came
+// later than 0.5 s, or an event waited for 50 ms.
 bool addVerdictRow(Table& table, const std::string& command) {
-  constexpr double kLimitMs = 500.0;
+  constexpr double kLimitMs = 500.0, kLatencyLimitMs = 50.0;
   const Json json = told(command);
   if (json.is_null() || json.contains("trouble") || json.at("milliseconds").empty()) {
     table.notes.push_back("Skipped: no stop was captured in the window. " +
@@ -56,7 +57,15 @@ bool addVerdictRow(Table& table, const std::string& command) {
   for (std::size_t i = 0; i < times.size(); ++i)
     row.remark += formatted("%s%.0f ms %s", i == 0 ? "" : "; ", times[i], lights[i].c_str());
   table.rows.push_back(row);
-  return *row.wall_ms <= kLimitMs;
+  const Json silent = json.value("silent", Json::object());
+  if (!silent.contains("worst_ms")) return *row.wall_ms <= kLimitMs;
+  Row late{.subject = "the window while an instrument is silent", .program = "longest wait of an event"};
+  late.wall_ms = silent.at("worst_ms").get<double>();
+  late.remark = formatted("median %.1f ms of %d looks; %s", silent.at("median_ms").get<double>(),
+                          silent.at("looks").get<int>(),
+                          silent.at("noticed").get<bool>() ? "looked for meanwhile" : "never missed");
+  table.rows.push_back(late);
+  return *row.wall_ms <= kLimitMs && *late.wall_ms < kLatencyLimitMs;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <QLineEdit>
 #include <QTableWidget>
 #include <cmath>
+#include <map>
 
 #include "tests/ui/support/window_fixture.h"
 #include "ui/look/icons.h"
@@ -70,6 +71,60 @@ TEST_F(LookTest, PreferencesChangeTheThemeAtOnce) {
   QTest::keyClick(unit, Qt::Key_Down);
   EXPECT_EQ(preferences.lengthUnit(), LengthUnit::Millimetre);
   preferences.setTheme(ThemeChoice::Light);
+}
+
+// Colours that make up at least such a share of a picture.
+std::map<QRgb, double> coloursOf(const QImage& picture, double least) {
+  std::map<QRgb, double> shares;
+  const double one = 1.0 / (picture.width() * picture.height());
+  for (int y = 0; y < picture.height(); ++y)
+    for (int x = 0; x < picture.width(); ++x) shares[picture.pixel(x, y)] += one;
+  std::erase_if(shares, [&](const auto& entry) { return entry.second < least; });
+  return shares;
+}
+
+// A look that is chosen while the window is open has the colours of one that was there from the beginning.
+TEST_F(LookTest, NoPanelKeepsColoursOfTheLookBefore) {
+  preferences.setTheme(ThemeChoice::Light);
+  makeProject(3, true);
+  const QString path = workspace().session().path();
+  // By perspective and panel. Three-dimensional pictures are never the same twice.
+  const auto pictures = [&] {
+    std::map<QString, QImage> made;
+    for (const Perspective perspective : kPerspectives) {
+      window->setPerspective(perspective);
+      settle();
+      for (const PanelInfo& panel : panels()) {
+        QWidget* widget = window->docks().panel(panel.id);
+        if (!widget->isVisible() || panel.id == "view3d" || panel.id == "stepper-view") continue;
+        made[perspectiveName(perspective) + "/" + panel.id] = widget->grab().toImage();
+      }
+    }
+    return made;
+  };
+  (void)pictures();  // everything has been seen in the look before
+  for (const ThemeChoice look : {ThemeChoice::Dark, ThemeChoice::Light}) {
+    preferences.setTheme(look);
+    settle();
+    const auto changed = pictures();
+    window->closeNow();
+    delete window.data();
+    window = openWindow();
+    must(workspace().session().open(path));
+    settle();
+    const auto fresh = pictures();
+    EXPECT_GT(changed.size(), 12U);
+    for (const auto& [name, picture] : changed) {
+      const auto found = fresh.find(name);
+      ASSERT_NE(found, fresh.end()) << name.toStdString();
+      const auto wanted = coloursOf(found->second, 0.0002);
+      for (const auto& [colour, share] : coloursOf(picture, 0.004))
+        EXPECT_TRUE(wanted.contains(colour))
+            << name.toStdString() << " keeps " << QColor(colour).name().toStdString() << " on "
+            << 100.0 * share << " % of it in the " << (look == ThemeChoice::Dark ? "dark" : "light")
+            << " look";
+    }
+  }
 }
 
 TEST_F(LookTest, OwnIconsTakeTheColourOfThePalette) {
