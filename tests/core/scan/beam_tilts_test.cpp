@@ -48,6 +48,13 @@ TEST(BeamTilts, TurnsOfTheMirror) {
   EXPECT_EQ(mirrorTurns(smallGeometry(0.5)), 2);
   EXPECT_EQ(mirrorTurns(smallGeometry(0.25)), 4);
   EXPECT_EQ(mirrorTurns(smallGeometry(-0.5)), 2);
+  // Scanners that see more than half a circle fire all beams in one turn.
+  ScannerGeometry wide = smallGeometry(0.5);
+  wide.columns = 361;
+  EXPECT_EQ(mirrorTurns(wide), 2) << "half a circle";
+  wide.columns = 381;
+  EXPECT_EQ(mirrorTurns(wide), 1) << "190 degrees";
+  EXPECT_NEAR(beamTurns(wide, 1), 0.5 / 360.0, 1e-12);
   const ScannerGeometry geometry = smallGeometry();
   EXPECT_DOUBLE_EQ(beamTurns(geometry, 0), 0.0);
   EXPECT_NEAR(beamTurns(geometry, 2), 1.0 / 360.0, 1e-12) << "a degree on, in the same turn";
