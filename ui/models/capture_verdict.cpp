@@ -148,6 +148,12 @@ void CaptureVerdict::startNext() {
           Judgement told{
               lightOf(verdict.light), qt(verdict.reason), qt(verdict.weak_directions), figuresOf(verdict),
               verdict.overlap,        verdict.placed,     verdict.world_from_scan,     0.0};
+          // Stops before it that hold too little are no map: to be the first one would be another thing.
+          if (work->map->size() == 0 && snapshot->scans().size() > 1 && told.light == CaptureLight::MoveOn) {
+            told.light = CaptureLight::Rescan;
+            told.reason =
+                "The stops before it have too few lines to register to: scan the last of them again first.";
+          }
           return [this, scan, told]() mutable {
             if (scan_ != scan) return;
             told.after_last_line_s = 0.001 * static_cast<double>(since_last_line_.elapsed());

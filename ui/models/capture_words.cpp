@@ -62,7 +62,8 @@ QString CaptureModel::title() const {
 QString CaptureModel::trouble() const {
   for (const StationInstrument* instrument : {&now_.scanner, &now_.tilt})
     for (const InstrumentFact& fact : instrument->facts)
-      if (fact.trouble) return qt(fact.name) + ": " + qt(fact.value);
+      // Figures in brackets are for who looks closer.
+      if (fact.trouble) return qt(fact.name) + ": " + qt(fact.value).section(" (", 0, 0);
   return {};
 }
 
@@ -132,8 +133,14 @@ QString CaptureModel::diskText() const {
   const int lines = static_cast<int>(std::get<long long>(all.at("lines")));
   const int columns = now_.sweep.number > 0 ? now_.sweep.geometry.columns : 361;
   const auto sweeps = static_cast<long long>(disk_free_bytes_ / storedBytes(lines, columns));
-  return sizeText(static_cast<unsigned long long>(disk_free_bytes_)) + ", " + groupedNumber(sweeps) +
-         " sweeps";
+  // Short enough for large letters: more than a survey's worth need not be counted.
+  constexpr long long kPlenty = 9999;
+  constexpr double kGigabyte = 1e9;
+  const QString room = disk_free_bytes_ >= 10.0 * kGigabyte
+                           ? groupedNumber(static_cast<long long>(disk_free_bytes_ / kGigabyte)) + " GB"
+                           : sizeText(static_cast<unsigned long long>(disk_free_bytes_));
+  return room + ", " + (sweeps > kPlenty ? "over " : "") + groupedNumber(std::min(sweeps, kPlenty)) +
+         (sweeps == 1 ? " sweep" : " sweeps");
 }
 QString CaptureModel::tiltText() const {
   return now_.tilt_rad ? degrees(*now_.tilt_rad, 2, true) : QString();

@@ -179,7 +179,7 @@ QWidget* CaptureConnectPage::buildFaults() {
   describe(fault_, "capture-fault", "Fault", "What is to go wrong with the emulated instruments");
   fault_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   fault_->setMinimumContentsLength(8);
-  order_ = new QPushButton("Make it happen", page);
+  order_ = new QPushButton("Order", page);
   describe(order_, "capture-order-fault", "Make the fault happen",
            "Order the fault of the emulated instruments, to see what happens and what helps");
   connect(order_, &QPushButton::clicked, this, &CaptureConnectPage::order);

@@ -27,6 +27,8 @@ namespace tiltmap::ui {
 
 namespace {
 
+constexpr int kNextStop = 2;  // the tab
+
 // Gloves: everything that is pressed is tall.
 void makeTall(QWidget& root) {
   for (QWidget* widget : root.findChildren<QWidget*>())
@@ -62,7 +64,8 @@ CapturePanel::CapturePanel(const PanelContext& context, QWidget* parent)
   column->setSpacing(0);
   column->addWidget(banner_);
   column->addWidget(tabs_, 1);
-  column->addWidget(makeFigures());
+  figures_box_ = makeFigures();
+  column->addWidget(figures_box_);
   column->addWidget(makeButtons());
   setFocusProxy(start_);
   column->setSizeConstraint(QLayout::SetNoConstraint);
@@ -73,6 +76,7 @@ CapturePanel::CapturePanel(const PanelContext& context, QWidget* parent)
   resume_->setMinimumHeight(56);
 
   connect(&model_, &CaptureModel::changed, this, &CapturePanel::refresh);
+  connect(tabs_, &QTabWidget::currentChanged, this, &CapturePanel::refresh);
   connect(stop_page_, &CaptureStopPage::changed, this, &CapturePanel::refresh);
   connect(&context.theme, &Theme::changed, this, &CapturePanel::paintStop);
   paintStop();
@@ -175,7 +179,9 @@ void CapturePanel::refresh() {
   const CaptureVerdict& verdict = model_.verdict();
   if (const auto& told = verdict.judgement()) {
     if (told->overlap > 0.0) place = QString("Overlap %1 %. ").arg(100.0 * told->overlap, 0, 'f', 0);
-    place += told->weak_directions;
+    // Of one that has no place nothing holds.
+    if (told->placed && !told->weak_directions.isEmpty())
+      place += "It " + told->weak_directions + (told->weak_directions.endsWith('.') ? "" : ".");
     place_->setToolTip(told->figures);
   } else if (const auto& so_far = verdict.estimate(); so_far && so_far->overlap > 0.0) {
     place =
@@ -183,6 +189,8 @@ void CapturePanel::refresh() {
   }
   place_->setText(place);
   place_->setVisible(!place.isEmpty());
+  // Who prepares the next stop needs the room, not what the last one was at.
+  figures_box_->setVisible(tabs_->currentIndex() != kNextStop || model_.isSweeping());
   context_.actions.scheduleRefresh();
 }
 

@@ -48,6 +48,7 @@ class CapturePanel : public QWidget {
   CaptureConnectPage* connect_page_;
   CaptureStopPage* stop_page_;
   QProgressBar* progress_ = nullptr;
+  QWidget* figures_box_ = nullptr;
   std::vector<QLabel*> figures_;
   QLabel* place_ = nullptr;
   QPushButton *start_ = nullptr, *resume_ = nullptr, *stop_ = nullptr;

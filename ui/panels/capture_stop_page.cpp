@@ -26,6 +26,7 @@ CaptureStopPage::CaptureStopPage(CaptureModel& model, const PanelContext& contex
       others << name;
   }
   form->leaveOut(others);
+  if (form->layout()) form->layout()->setContentsMargins(0, 0, 0, 0);
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(8, 8, 8, 8);
   column->setSpacing(8);

@@ -16,7 +16,11 @@ class GloveButton : public QToolButton {
   QSize sizeHint() const override {
     return QToolButton::sizeHint().expandedTo({kGloveControl_px, kGloveControl_px});
   }
-  QSize minimumSizeHint() const override { return sizeHint(); }
+  // In large letters four of them stand side by side in a narrow panel.
+  QSize minimumSizeHint() const override {
+    const int words = fontMetrics().horizontalAdvance(text()) + 12;
+    return {std::max(kGloveControl_px, std::min(words, sizeHint().width())), sizeHint().height()};
+  }
 
  protected:
   // Which one is on is seen on any ground.

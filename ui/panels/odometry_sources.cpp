@@ -35,6 +35,8 @@ QComboBox* axesChoice(QWidget* parent, const QString& name, const Preferences& p
   box->addItem("x forward, y left (ROS)", static_cast<int>(BodyAxes::ForwardLeftUp));
   box->addItem("x right, y forward (Tiltmap)", static_cast<int>(BodyAxes::RightForwardUp));
   box->setMinimumHeight(kGloveField_px);
+  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  box->setMinimumContentsLength(10);
   box->setCurrentIndex(preferences.text(key, "0") == "1" ? 1 : 0);
   return box;
 }
@@ -230,14 +232,15 @@ FeedOdometryPage::FeedOdometryPage(const Theme& theme, Preferences& preferences,
                       "The vehicle still stands at the last stop: take the feed's latest pose for it");
   layout->addWidget(where_, 0, 0);
   layout->addWidget(connect_, 0, 1);
-  layout->addWidget(axes_, 1, 0, 1, 2);
-  layout->addWidget(state_, 2, 0, 1, 2);
-  layout->addWidget(pose_, 3, 0, 1, 2);
+  // What is pressed at every stop stands above what is chosen once.
   auto* buttons = new QHBoxLayout;
   buttons->setSpacing(8);
   buttons->addWidget(take_, 1);
   buttons->addWidget(here_, 1);
-  layout->addLayout(buttons, 4, 0, 1, 2);
+  layout->addLayout(buttons, 1, 0, 1, 2);
+  layout->addWidget(state_, 2, 0, 1, 2);
+  layout->addWidget(pose_, 3, 0, 1, 2);
+  layout->addWidget(axes_, 4, 0, 1, 2);
 
   connect(connect_, &QToolButton::toggled, this, &FeedOdometryPage::connectOrNot);
   connect(where_, &QLineEdit::returnPressed, connect_, [this] { connect_->setChecked(true); });

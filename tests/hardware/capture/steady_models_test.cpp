@@ -135,8 +135,9 @@ TEST_P(SteadyModels, AWholeScanHasEveryBeamAtItsOwnTilt) {
   EXPECT_GT(without, 2.0 * with);
 }
 
-TEST_P(SteadyModels, WhatGoesWrongLosesNoLineAndPlacesNoneWrongly) {
-  const bool epos = std::string(GetParam().tilt).starts_with("epos");
+class SteadyModelFaults : public SteadyModels {};
+
+TEST_P(SteadyModelFaults, LoseNoLineAndPlaceNoneWrongly) {
   for (const char* fault : {"motor-stall", "lost-steps", "tilt-late-reply", "power-cut=2"}) {
     SCOPED_TRACE(fault);
     sent_.clear();
@@ -144,8 +145,14 @@ TEST_P(SteadyModels, WhatGoesWrongLosesNoLineAndPlacesNoneWrongly) {
     const auto report = run();
     ASSERT_TRUE(report) << report.error().what << " / " << report.error().remedy;
     EXPECT_EQ(lines_.size(), 8U);
-    EXPECT_LT(worst().first, GetParam().most_off_deg + (epos ? 0.06 : 0.06));
+    EXPECT_LT(worst().first, GetParam().most_off_deg + 0.06);
   }
+}
+
+std::string nameOf(const ::testing::TestParamInfo<Rig>& info) {
+  std::string name = std::string(info.param.scanner) + "_" + info.param.tilt;
+  std::ranges::replace(name, '-', '_');
+  return name;
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -154,11 +161,11 @@ INSTANTIATE_TEST_SUITE_P(
                       Rig{"utm30lx", "mip50", 0.12, 7.0}, Rig{"utm30lx-ew", "mip50", 0.12, 7.0},
                       Rig{"urg04lx", "mip50", 0.12, 40.0}, Rig{"lms111", "epos", 0.07, 7.0},
                       Rig{"lms111", "epos-v1", 0.07, 7.5}, Rig{"utm30lx", "epos-usb", 0.12, 7.0}),
-    [](const auto& info) {
-      std::string name = std::string(info.param.scanner) + "_" + info.param.tilt;
-      std::ranges::replace(name, '-', '_');
-      return name;
-    });
+    nameOf);
+INSTANTIATE_TEST_SUITE_P(Rigs, SteadyModelFaults,
+                         ::testing::Values(Rig{"lms111", "epos", 0.07, 7.0},
+                                           Rig{"utm30lx", "mip50", 0.12, 7.0}),
+                         nameOf);
 
 // The scanner of the thesis on a newer controller.
 class SteadyEpos : public ::testing::Test {

@@ -1,6 +1,7 @@
 // Two stops captured in the panel with instruments at ports, placed by the vehicle's own computer over TCP.
 #include <QComboBox>
 #include <QLineEdit>
+#include <QScrollArea>
 #include <QTabWidget>
 #include <mutex>
 #include <thread>
@@ -84,6 +85,11 @@ class CaptureFeedTest : public WindowTest {
     ASSERT_TRUE(comes(StationState::Verdict)) << told();
     ASSERT_EQ(snapshot().scans().size(), number);
     EXPECT_EQ(snapshot().scans().back().lines, 3);
+    ASSERT_TRUE(waitUntil([&] { return panel->model().verdict().judgement().has_value(); }));
+    settle();
+    if (number > 1) {
+      EXPECT_EQ(panel->banner().title(), "Rescan") << "three lines are no map, and it is not the first stop";
+    }
   }
 
   RealClock clock;
@@ -135,6 +141,15 @@ TEST_F(CaptureFeedTest, FromStartToStoredStopsWithPosesOfTheFeed) {
     click(mode);
     take(mode);
   }
+  // In large letters no page is wider than its place.
+  preferences.setTheme(ui::ThemeChoice::HighContrast);
+  for (const char* mode : {"odometry-typed", "odometry-nudged", "odometry-file", "odometry-feed"}) {
+    settle();
+    click(mode);
+    auto* scroll = find<QScrollArea>("capture-stop-scroll");
+    EXPECT_LE(scroll->widget()->width(), scroll->viewport()->width()) << mode;
+  }
+  preferences.setTheme(ui::ThemeChoice::Light);
   EXPECT_EQ(snapshot().scans().size(), 2U);
 }
 
