@@ -48,7 +48,8 @@ constexpr double kLinkError_m = 0.05;  // what each link between may have added 
 constexpr double kLinkError_rad = 0.3 * kDegree;
 constexpr double kTurnArm_m = 10.0;  // a turn counts as the shift it makes at this distance
 constexpr double kRefineBelow_m = 0.005;
-constexpr double kFurthest = 6.0;  // a step of the settling is lengthened by at most so much
+constexpr double kNearlyAll = 0.99;  // of the ties: one of some thousands may sway without end
+constexpr double kFurthest = 6.0;    // a step of the settling is lengthened by at most so much
 
 class JointRelaxation : public RelaxationEngine {
  public:
@@ -167,31 +168,50 @@ class JointRelaxation : public RelaxationEngine {
     // Large motions are not linear: the same quadratic forms are carried along to where the poses go.
     RelaxationEvent solved;
     std::size_t misfits = 0;
+    const std::vector<Pose> at_first = poses_;
+    std::vector<PairTerm> ties;
     for (int i = 0; i < kInnerSteps; ++i) {
-      std::vector<PairTerm> ties = terms();
+      ties = terms();
       const std::size_t by_surface = ties.size();
       addMeasured(ties);
       misfits = ties.size() - by_surface;
       RelaxationEvent inner;
       if (!solve(ties, inner)) return end(report);
-      const double largest = std::max(inner.translation_m, inner.rotation_rad * kTurnArm_m);
       inner.translation_m = std::max(inner.translation_m, solved.translation_m);
       inner.rotation_rad = std::max(inner.rotation_rad, solved.rotation_rad);
       solved = inner;
-      if (largest < 0.1 * settings_.registration.loss_minimum_m) break;
+      if (last_bent_m_ < 0.1 * settings_.registration.loss_minimum_m) break;
     }
     report.events.push_back(solved);
     ++rounds_;
     report.fraction = 0.5 * rounds_ / (rounds_ + 2.0);
-    const bool at_rest = solved.translation_m < settings_.registration.loss_minimum_m &&
-                         solved.rotation_rad * kTurnArm_m < settings_.registration.loss_minimum_m;
+    const bool at_rest = bentSince(at_first, ties) < kRefineBelow_m;
     closing_ = misfits > 0 && !at_rest && rounds_ < kClosingRounds;
   }
 
-  // Once the poses move by millimetres only; the choice of links stands then.
+  // Once scans move against each other by millimetres only; the choice of links stands then, and cells keep
+  // the last word.
   bool canRefine() const {
     const RegistrationSettings& r = settings_.registration;
-    return r.refine && loss_.isOwn() && !links_.empty() && last_moved_m_ < kRefineBelow_m;
+    return r.refine && loss_.isOwn() && !links_.empty() &&
+           (!link_cells_.empty() || last_bent_m_ < kRefineBelow_m);
+  }
+
+  // How far the two scans of nearly every tie have moved against each other at most, in m. What scans do in
+  // the world says little: the far end of a long drive sways by centimetres where no pair of scans moves by a
+  // tenth of a millimetre.
+  double bentSince(const std::vector<Pose>& before, const std::vector<PairTerm>& ties) const {
+    if (ties.empty()) return 0.0;
+    std::vector<double> bent;
+    for (const PairTerm& tie : ties) {
+      const auto a = static_cast<std::size_t>(tie.fixed), b = static_cast<std::size_t>(tie.moving);
+      const PoseDifference by = difference(before[a].inverse() * before[b], poses_[a].inverse() * poses_[b]);
+      bent.push_back(std::max(by.translation_m, by.rotation_rad * kTurnArm_m));
+    }
+    const auto nearly_all = static_cast<std::size_t>(kNearlyAll * static_cast<double>(bent.size() - 1) + 0.5);
+    const auto at = bent.begin() + static_cast<std::ptrdiff_t>(nearly_all);
+    std::nth_element(bent.begin(), at, bent.end());
+    return *at;
   }
 
   // A link that was not reached when asked to stop is as it was; the step is not taken then.
@@ -335,6 +355,7 @@ class JointRelaxation : public RelaxationEngine {
     }
     solved.kind = RelaxationEventKind::Solved;
     if (lengthened) lengthen(*motions);
+    const std::vector<Pose> before = poses_;
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       if (held[i]) continue;
       const Pose moved = poses_[i] * Pose().moved((*motions)[i]);
@@ -343,6 +364,7 @@ class JointRelaxation : public RelaxationEngine {
       solved.translation_m = std::max(solved.translation_m, by.translation_m);
       solved.rotation_rad = std::max(solved.rotation_rad, by.rotation_rad);
     }
+    last_bent_m_ = bentSince(before, ties);
     describe(solved);
     return true;
   }
@@ -374,8 +396,7 @@ class JointRelaxation : public RelaxationEngine {
     if (!solve(terms(), solved, true)) return end(report);
     report.events.push_back(solved);
     ++iterations_;
-    last_moved_m_ = solved.translation_m;
-    updateScale(solved.translation_m);
+    updateScale(last_bent_m_);
     const RegistrationSettings& r = settings_.registration;
     const bool tiny = solved.translation_m < r.min_translation_m && solved.rotation_rad < r.min_rotation_rad;
     const bool same = std::abs(solved.rms_m - last_rms_m_) < 0.5 * r.min_change * last_rms_m_ &&
@@ -491,10 +512,10 @@ class JointRelaxation : public RelaxationEngine {
   LossScale loss_;
   double widest_m_ = 0.0;  // of the loss scales of this data
   double last_rms_m_ = 0.0;
-  double last_moved_m_ = std::numeric_limits<double>::infinity();  // at most, in the last step
-  std::vector<LinkCells> link_cells_;                              // of links_, once they are refined
-  std::vector<Vector6d> last_motions_;                             // as solved, before they were lengthened
-  double length_ = 1.0;                                            // of the last step
+  double last_bent_m_ = std::numeric_limits<double>::infinity();  // by the last step (bentSince)
+  std::vector<LinkCells> link_cells_;                             // of links_, once they are refined
+  std::vector<Vector6d> last_motions_;                            // as solved, before they were lengthened
+  double length_ = 1.0;                                           // of the last step
   int own_scale_steps_left_ = 0;
   int iterations_ = 0;
 };
