@@ -130,7 +130,7 @@ class JointRelaxation : public RelaxationEngine {
   bool refinesCells() const {
     const RegistrationSettings& r = settings_.registration;
     return r.refine && r.loss == Loss::Annealed && std::ranges::all_of(input_.scans, [](const auto& scan) {
-             return scan->raster.has_value() && !scan->cells.empty();
+             return scan->elements.empty() || (scan->raster.has_value() && !scan->cells.empty());
            });
   }
   static std::vector<std::uint32_t> everyNth(const std::vector<std::uint32_t>& all, std::size_t n) {
@@ -245,7 +245,9 @@ class JointRelaxation : public RelaxationEngine {
                        RelaxationStep& report, const std::stop_token& stop) const {
     std::vector<Attempt*> todo;
     std::vector<const JointLink*> of;
-    const LinkCounter counter(poses_.size(), links);
+    LinkCounter counter(poses_.size(), links);
+    for (const PoseConstraint& c : input_.constraints)
+      if (isSettled(c.fixed) && isSettled(c.moving)) counter.join(c.fixed, c.moving);
     for (const JointLink& link : links) {
       if (link.used) continue;
       const int between = counter.linksBetween(link.fixed, link.moving);

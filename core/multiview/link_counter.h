@@ -16,6 +16,11 @@ class LinkCounter {
     for (int i = 1; i < static_cast<int>(scans); ++i) join(i - 1, i);
   }
 
+  void join(int a, int b) {
+    next_[static_cast<std::size_t>(a)].push_back(b);
+    next_[static_cast<std::size_t>(b)].push_back(a);
+  }
+
   int linksBetween(int from, int to) const {
     std::vector<int> steps(next_.size(), -1);
     std::vector<int> open{from};
@@ -32,10 +37,6 @@ class LinkCounter {
   }
 
  private:
-  void join(int a, int b) {
-    next_[static_cast<std::size_t>(a)].push_back(b);
-    next_[static_cast<std::size_t>(b)].push_back(a);
-  }
   std::vector<std::vector<int>> next_;
 };
 

@@ -28,6 +28,8 @@ Status checkInput(const RelaxationInput& input) {
   if (input.world_from_scan.size() != count) return unusable("the number of poses is not that of the scans");
   for (const PreparedScanPtr& scan : input.scans)
     if (!scan) return unusable("a scan is missing");
+  if (!input.settled.empty() && input.settled.size() != count)
+    return unusable("the number of flags is not that of the scans");
   for (std::size_t i = 0; i < count; ++i)
     if (!input.world_from_scan[i].isFinite())
       return unusable("the start of scan " + std::to_string(i) + " is not finite");

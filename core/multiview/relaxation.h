@@ -35,6 +35,9 @@ struct RelaxationInput {
   std::vector<PoseConstraint> constraints;  // Joint only
   // Pairs of scans that must not be linked by their surfaces (a link that was disabled), either way round.
   std::vector<std::pair<int, int>> excluded = {};
+  // One a scan, or empty for none: two scans that are settled are not measured against each other (all that
+  // is known of them stands in constraints).
+  std::vector<char> settled = {};
 };
 
 enum class RelaxationEventKind {

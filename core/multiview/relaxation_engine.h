@@ -43,7 +43,12 @@ class RelaxationEngine {
   const PreparedScanPtr& scanPtr(int i) const { return input_.scans[static_cast<std::size_t>(i)]; }
   const Pose& pose(int i) const { return poses_[static_cast<std::size_t>(i)]; }
   bool isPinned(int i) const { return pinned_[static_cast<std::size_t>(i)]; }
-  bool isExcluded(int a, int b) const { return excluded_.contains(std::minmax(a, b)); }
+  bool isSettled(int i) const {
+    return !input_.settled.empty() && input_.settled[static_cast<std::size_t>(i)];
+  }
+  bool isExcluded(int a, int b) const {
+    return (isSettled(a) && isSettled(b)) || excluded_.contains(std::minmax(a, b));
+  }
   bool isWatched() const { return watcher_ && *watcher_; }
   void tell(RelaxationState state) const;
   // state() with what is done now.

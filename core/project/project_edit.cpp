@@ -90,6 +90,16 @@ ProjectEdit acceptLinkEdit(const Link& link) {
   return edit;
 }
 
+// Whether one of the links joins two scans that are relaxed. What only ties new scans to them leaves the
+// relaxed poses as right as they were.
+static bool concernsRelaxed(const ProjectSnapshot& base, const std::vector<Link>& links) {
+  const auto relaxed = [&base](ScanId id) {
+    const ScanEntry* scan = base.find(id);
+    return scan && scan->pose(Stage::Relaxed);
+  };
+  return std::ranges::any_of(links, [&](const Link& l) { return relaxed(l.fixed) && relaxed(l.moving); });
+}
+
 ProjectEdit registerEdit(SnapshotPtr base, std::vector<Link> links,
                          std::vector<std::pair<ScanId, Pose>> pairwise) {
   ProjectEdit edit;
@@ -100,9 +110,10 @@ ProjectEdit registerEdit(SnapshotPtr base, std::vector<Link> links,
     edit.concerned.push_back(link.fixed);
     edit.concerned.push_back(link.moving);
   }
+  const bool clear = !edit.base || concernsRelaxed(*edit.base, links);
   edit.steps.push_back(AddLinks{std::move(links), true});
   edit.steps.push_back(SetPoses{Stage::Pairwise, std::move(pairwise)});
-  edit.steps.push_back(ClearPoses{Stage::Relaxed});
+  if (clear) edit.steps.push_back(ClearPoses{Stage::Relaxed});
   return edit;
 }
 

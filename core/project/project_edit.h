@@ -142,7 +142,8 @@ ProjectEdit linkStateEdit(LinkId link, LinkState state);
 // A person vouches for what was found: the link becomes one set by hand, which registering again leaves
 // alone. It is active afterwards. Throws std::invalid_argument for a link that did not succeed.
 ProjectEdit acceptLinkEdit(const Link& link);
-// Links found and the poses chained from them; the stage `relaxed` computed from older links is cleared.
+// Links found and the poses chained from them; the stage `relaxed` computed from older links is cleared where
+// one of them joins two scans that are in it.
 ProjectEdit registerEdit(SnapshotPtr base, std::vector<Link> links,
                          std::vector<std::pair<ScanId, Pose>> pairwise);
 ProjectEdit relaxEdit(SnapshotPtr base, std::vector<std::pair<ScanId, Pose>> relaxed);

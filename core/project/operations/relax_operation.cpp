@@ -3,50 +3,28 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <iterator>
-#include <stdexcept>
+#include <numeric>
+#include <optional>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
 #include "core/base/parallel.h"
 #include "core/multiview/relaxation.h"
-#include "core/project/link_judgement.h"
-#include "core/project/link_what_if.h"
 #include "core/project/operations/index_list.h"
 #include "core/project/operations/link_consistency.h"
-#include "core/project/operations/register_operation.h"
+#include "core/project/operations/relax_increment.h"
+#include "core/project/operations/relax_start.h"
 
 namespace tiltmap {
 
 namespace {
 
-struct RelaxSettings {
-  RelaxationSettings relaxation;
-  std::string pin;
-  int threads = 0;
-};
-
-// Registering the pairs first, where nobody has, preparing the scans, and judging what was found, as shares of
-// the progress that is left then.
+// Registering the pairs first, where nobody has, and preparing the scans, as shares of the progress.
 constexpr double kRegistering = 0.4;
 constexpr double kPreparing = 0.3;
-constexpr double kJudging = 0.1;
-
-const ParameterTable<RelaxSettings>& relaxTable() {
-  static const ParameterTable<RelaxSettings> table = [] {
-    ParameterTable<RelaxSettings> t("relax");
-    t.text(
-        "pin", &RelaxSettings::pin,
-        "Scans that never move, such as 0,5 or 0-3, beside those pinned in the project; scan 0 never does, "
-        "named or not",
-        "ours; thesis 6.2");
-    t.integer("threads", &RelaxSettings::threads, "", 0, 256,
-              "Threads to use, 0 for all cores; the result does not depend on it", "ours");
-    t.include(relaxationParameters(), &RelaxSettings::relaxation);
-    return t;
-  }();
-  return table;
-}
 
 // Those of the project and those of the parameter, ascending.
 Result<std::vector<int>> pinsOf(const ProjectSnapshot& snapshot, const RelaxSettings& settings) {
@@ -68,118 +46,53 @@ std::string methodName(const RelaxSettings& settings) {
   return std::get<std::string>(relaxationParameters().values(settings.relaxation).at("method"));
 }
 
+// Those named; scans without elements stand for the others.
 Result<std::vector<PreparedScanPtr>> prepareScans(const ProjectSnapshot& snapshot,
+                                                  const std::vector<int>& which,
                                                   const RelaxSettings& settings, const JobControl& control,
                                                   RelaxationFeed* feed) {
-  const std::size_t count = snapshot.scans().size();
-  std::vector<Result<PreparedScanPtr>> slots(count, PreparedScanPtr());
+  std::vector<Result<PreparedScanPtr>> slots(which.size(), PreparedScanPtr());
   std::atomic<std::size_t> done = 0;
-  parallelFor(count, settings.threads, [&](std::size_t i) {
+  parallelFor(which.size(), settings.threads, [&](std::size_t k) {
     if (feed) feed->waitWhilePaused(control.stop);
     if (control.stopRequested()) return;
-    slots[i] = snapshot.scans()[i].scan().map(
+    slots[k] = snapshot.scans()[static_cast<std::size_t>(which[k])].scan().map(
         [&](const Scan& scan) { return prepare(scan, settings.relaxation.registration); });
-    control.tell(static_cast<double>(++done) / static_cast<double>(count),
-                 "preparing scan " + std::to_string(i));
+    control.tell(static_cast<double>(++done) / static_cast<double>(which.size()),
+                 "preparing scan " + std::to_string(which[k]));
   });
   if (control.stopRequested())
     return fail(kCancelled, "relax", "nothing was changed; start it again when you like");
-  std::vector<PreparedScanPtr> prepared;
-  for (auto& slot : slots) {
-    if (!slot) return fail(slot.error());
-    prepared.push_back(*slot);
+  std::vector<PreparedScanPtr> prepared(snapshot.scans().size(), std::make_shared<const PreparedScan>());
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    if (!slots[k]) return fail(slots[k].error());
+    prepared[static_cast<std::size_t>(which[k])] = *slots[k];
   }
   return prepared;
 }
 
-// Where the relaxation starts from, and what links there are.
-struct RelaxStart {
-  std::vector<Pose> world_from_scan;
-  std::vector<Link> links;
-  std::vector<EditStep> steps;  // of the registration that came first; empty where there was none
-  std::vector<std::string> warnings;
-  bool registered_first = false;
-};
-
-bool joins(const Link& link, ScanId a, ScanId b) {
-  return (link.fixed == a && link.moving == b) || (link.fixed == b && link.moving == a);
-}
-
-// The pairwise poses; where there are none, the pairs are registered first, as `register` does it.
-Result<RelaxStart> startOf(const SnapshotPtr& snapshot, const RelaxSettings& settings,
-                           const JobControl& control) {
-  RelaxStart start;
-  start.links = snapshot->links();
-  if (snapshot->hasStage(Stage::Pairwise)) {
-    start.world_from_scan = snapshot->filledPoses(Stage::Pairwise);
-    return start;
-  }
-  const auto registration = makeRegisterOperation();
-  const bool thesis = settings.relaxation.method == RelaxationMethod::ActiveSet;
-  auto values = registration->presetValues(thesis ? "thesis" : "default");
-  if (!values) return fail(values.error());
-  (*values)["threads"] = static_cast<long long>(settings.threads);
-  auto registered = registration->run(snapshot, *values, control);
-  if (!registered) return fail(registered.error());
-  start.registered_first = true;
-  start.steps = std::move(registered->edit.steps);
-  start.warnings.emplace_back(
-      "the project had no pairwise poses, so every scan was registered to the one before it first");
-  start.warnings.insert(start.warnings.end(), registered->warnings.begin(), registered->warnings.end());
-  // The order of the scans, as filledPoses gives it.
-  for (const EditStep& step : start.steps) {
-    if (const auto* added = std::get_if<AddLinks>(&step))
-      for (const Link& link : added->links) {
-        std::erase_if(start.links, [&](const Link& old) {
-          return old.origin == link.origin && joins(old, link.fixed, link.moving);
-        });
-        start.links.push_back(link);
-      }
-    if (const auto* poses = std::get_if<SetPoses>(&step))
-      for (const auto& [id, pose] : poses->poses) start.world_from_scan.push_back(pose);
-  }
-  if (start.world_from_scan.size() != snapshot->scans().size())
-    throw std::logic_error("relax: the registration did not place every scan");
-  return start;
-}
-
-void addLinks(const ProjectSnapshot& snapshot, const std::vector<Link>& links, RelaxationInput& input) {
-  for (const Link& link : links) {
-    const auto fixed = snapshot.indexOf(link.fixed), moving = snapshot.indexOf(link.moving);
-    if (!fixed || !moving) continue;
-    const int a = static_cast<int>(*fixed), b = static_cast<int>(*moving);
-    if (link.state == LinkState::Disabled) {
-      input.excluded.emplace_back(a, b);
-      continue;
-    }
-    // What an earlier relaxation found is found again, or it does not hold any more.
-    if (!link.usable() || link.origin == LinkOrigin::Odometry || link.stop_reason == kFoundByRelaxation)
-      continue;
-    const bool by_hand = link.origin == LinkOrigin::ByHand;
-    if (!by_hand && !link.information) continue;
-    input.constraints.push_back(
-        {a, b, link.fixed_from_moving, link.information.value_or(informationByHand()), !by_hand});
-  }
-}
-
-// A link that says more than one found here would: set by hand, disabled, or registered with success.
-bool haveLink(const std::vector<Link>& links, ScanId a, ScanId b) {
+// Scans with a link that says more than one found here would: set by hand, disabled, or registered with
+// success.
+JoinedPairs linked(const std::vector<Link>& links) {
+  JoinedPairs pairs;
   for (const Link& link : links) {
     const bool ours = link.origin == LinkOrigin::Automatic && link.state == LinkState::Active &&
                       (!link.succeeded || link.stop_reason == kFoundByRelaxation);
-    if (joins(link, a, b) && !ours) return true;
+    if (!ours) pairs.add(link.fixed, link.moving);
   }
-  return false;
+  pairs.sort();
+  return pairs;
 }
 
 std::vector<Link> newLinks(const ProjectSnapshot& snapshot, const std::vector<Link>& links,
                            const RelaxationResult& result) {
   std::vector<Link> found_links;
+  const JoinedPairs have = linked(links);
   for (const RelaxationLink& found : result.links) {
     const ScanId fixed = snapshot.scans()[static_cast<std::size_t>(found.fixed)].id;
     const ScanId moving = snapshot.scans()[static_cast<std::size_t>(found.moving)].id;
     // The other methods keep no figures a pair; without an information there is nothing to compute from.
-    if (!found.used || found.information.isZero() || haveLink(links, fixed, moving)) continue;
+    if (!found.used || found.information.isZero() || have.contains(fixed, moving)) continue;
     Link link;
     link.fixed = fixed;
     link.moving = moving;
@@ -196,16 +109,22 @@ std::vector<Link> newLinks(const ProjectSnapshot& snapshot, const std::vector<Li
   return found_links;
 }
 
-// Links of an earlier relaxation that this one did not find again.
-std::vector<LinkId> staleLinks(const ProjectSnapshot& snapshot, const std::vector<Link>& found) {
+// Links of an earlier relaxation that this one looked for and did not find again. `added`: it looked only for
+// links of these; empty: for all.
+std::vector<LinkId> staleLinks(const ProjectSnapshot& snapshot, const std::vector<int>& added,
+                               const std::vector<Link>& found) {
+  JoinedPairs again;
+  for (const Link& link : found) again.add(link.fixed, link.moving);
+  again.sort();
+  std::set<ScanId> new_ones;
+  for (const int i : added) new_ones.insert(snapshot.scans()[static_cast<std::size_t>(i)].id);
   std::vector<LinkId> stale;
   for (const Link& link : snapshot.links()) {
     if (link.stop_reason != kFoundByRelaxation || link.origin != LinkOrigin::Automatic ||
         link.state != LinkState::Active)
       continue;
-    const bool again =
-        std::ranges::any_of(found, [&](const Link& other) { return joins(other, link.fixed, link.moving); });
-    if (!again) stale.push_back(link.id);
+    const bool looked_for = added.empty() || new_ones.contains(link.fixed) || new_ones.contains(link.moving);
+    if (looked_for && !again.contains(link.fixed, link.moving)) stale.push_back(link.id);
   }
   return stale;
 }
@@ -250,39 +169,21 @@ nlohmann::json reportOf(const RelaxationResult& result) {
   return report;
 }
 
-// Holds the scans of each link that was found against each other: it stands in the table beside registered
-// ones, and can be trusted or not as they can.
-Status judgeFound(const ProjectSnapshot& snapshot, const std::vector<PreparedScanPtr>& scans,
-                  const std::vector<Pose>& world_from_scan, int threads, const JobControl& control,
-                  std::vector<Link>& found) {
-  std::vector<PairToJudge> pairs;
-  for (const Link& link : found) {
-    PairToJudge pair{snapshot.indexOf(link.fixed).value(), snapshot.indexOf(link.moving).value(), {}};
-    pair.claim.fixed_from_moving = link.fixed_from_moving;
-    pair.claim.start = world_from_scan[pair.fixed].inverse() * world_from_scan[pair.moving];
-    pairs.push_back(std::move(pair));
-  }
-  auto judged = judgePairs(
-      pairs, [&](std::size_t i) { return Result<JudgedScanPtr>(judgedScan(scans[i])); }, threads, {},
-      control);
-  if (!judged) return fail(judged.error());
-  for (std::size_t k = 0; k < found.size(); ++k)
-    found[k].judgement = std::make_shared<const PairJudgement>(std::move((*judged)[k]));
-  return {};
-}
-
 // Poses and links as one edit, with those of the registration that came first.
-ProjectEdit editOf(const SnapshotPtr& snapshot, RelaxStart start, std::vector<Link> found,
+ProjectEdit editOf(const SnapshotPtr& snapshot, RelaxStart start, const std::vector<int>& added,
                    const RelaxationResult& result) {
   std::vector<std::pair<ScanId, Pose>> poses;
   for (std::size_t i = 0; i < result.poses.size(); ++i)
     poses.emplace_back(snapshot->scans()[i].id, result.poses[i]);
   ProjectEdit edit = relaxEdit(snapshot, std::move(poses));
+  if (!added.empty())
+    edit.title = "relax " + std::to_string(added.size()) + (added.size() == 1 ? " new scan" : " new scans");
   if (start.registered_first) edit.title = "register and " + edit.title;
   edit.steps.insert(edit.steps.begin(), std::make_move_iterator(start.steps.begin()),
                     std::make_move_iterator(start.steps.end()));
+  std::vector<Link> found = newLinks(*snapshot, start.links, result);
   // First, while they are surely there.
-  if (auto stale = staleLinks(*snapshot, found); !stale.empty())
+  if (auto stale = staleLinks(*snapshot, added, found); !stale.empty())
     edit.steps.insert(edit.steps.begin(), DeleteLinks{std::move(stale)});
   if (!found.empty()) edit.steps.push_back(AddLinks{std::move(found), true});
   return edit;
@@ -297,13 +198,13 @@ JobControl part(const JobControl& control, double from, double to) {
   return inner;
 }
 
-RelaxationBeginning beginningOf(const ProjectSnapshot& snapshot, const RelaxationInput& input,
-                                const RelaxSettings& settings) {
+RelaxationBeginning beginningOf(const ProjectSnapshot& snapshot, const std::vector<Pose>& world_from_scan,
+                                const std::vector<int>& pins, const RelaxSettings& settings) {
   RelaxationBeginning beginning;
   beginning.method = methodName(settings);
   for (const ScanEntry& scan : snapshot.scans()) beginning.scans.push_back(scan.id);
-  beginning.world_from_scan = input.world_from_scan;
-  beginning.pins = input.pins;
+  beginning.world_from_scan = world_from_scan;
+  beginning.pins = pins;
   if (beginning.pins.empty() || beginning.pins.front() != 0) beginning.pins.insert(beginning.pins.begin(), 0);
   return beginning;
 }
@@ -327,16 +228,32 @@ JobControl held(const JobControl& control, RelaxationFeed* feed) {
   return inner;
 }
 
+// Whether an added scan has a link of its own to one that is not its neighbour: it may be false.
+bool closesLoop(const ProjectSnapshot& snapshot, const std::vector<Link>& links,
+                const std::vector<int>& added) {
+  return std::ranges::any_of(links, [&](const Link& link) {
+    const auto fixed = snapshot.indexOf(link.fixed), moving = snapshot.indexOf(link.moving);
+    if (!fixed || !moving || !link.usable() || link.origin != LinkOrigin::Automatic ||
+        link.stop_reason == kFoundByRelaxation)
+      return false;
+    const int a = static_cast<int>(*fixed), b = static_cast<int>(*moving);
+    return std::abs(a - b) > 1 &&
+           (std::ranges::binary_search(added, a) || std::ranges::binary_search(added, b));
+  });
+}
+
 class RelaxOperation : public SettingsOperation<RelaxSettings> {
  public:
   explicit RelaxOperation(std::shared_ptr<RelaxationFeed> feed)
-      : SettingsOperation(relaxTable()), feed_(std::move(feed)) {}
+      : SettingsOperation(relaxParameters()), feed_(std::move(feed)) {}
   std::string title() const override { return "Relax all scans"; }
   std::string help() const override {
     return "Takes all overlapping pairs of scans together, not only neighbours in time, and spreads what the "
            "pairs' errors have added up to. Starts from the stage `pairwise` (registers every scan to the "
            "one "
-           "before it first where there is none) and makes the stage `relaxed`; scan 0 never moves.";
+           "before it first where there is none) and makes the stage `relaxed`; scan 0 never moves. Where "
+           "only "
+           "scans have come since the last relaxation, they are put onto the others (`extent`).";
   }
 
  protected:
@@ -353,54 +270,132 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
     const auto started = std::chrono::steady_clock::now();
     auto pins = pinsOf(*snapshot, settings);
     if (!pins) return fail(pins.error());
-    const bool registers = !snapshot->hasStage(Stage::Pairwise);
-    const double from = registers ? kRegistering : 0.0;
-    const JobControl registering = part(control, 0.0, from);
-    auto start = startOf(snapshot, settings, held(registering, feed_.get()));
-    if (!start) return fail(start.error());
-    const double prepared_at = from + kPreparing * (1.0 - from);
-    auto prepared = prepareScans(*snapshot, settings, part(control, from, prepared_at), feed_.get());
-    if (!prepared) return fail(prepared.error());
-
     OperationResult outcome;
-    outcome.warnings = start->warnings;
-    RelaxationInput input;
-    input.scans = std::move(*prepared);
-    auto consistent = consistentLinks(*snapshot, start->links, start->world_from_scan, *pins);
-    if (!consistent) return fail(consistent.error());
-    outcome.warnings.insert(outcome.warnings.end(), consistent->warnings.begin(), consistent->warnings.end());
-    input.world_from_scan = std::move(consistent->world_from_scan);
-    input.pins = *pins;
-    addLinks(*snapshot, consistent->links, input);
-    if (feed_) feed_->began(beginningOf(*snapshot, input, settings));
-
-    const std::vector<PreparedScanPtr> scans = input.scans;
-    const std::vector<Pose> started_at = input.world_from_scan;
-    const double relaxed_at = 1.0 - kJudging * (1.0 - prepared_at);
-    auto result = relax(std::move(input), settings.relaxation, settings.threads,
-                        part(control, prepared_at, relaxed_at), watchFor(feed_.get(), control.stop));
-    if (!result) return fail(result.error());
-    std::vector<Link> found = newLinks(*snapshot, start->links, *result);
-    if (Status status = judgeFound(*snapshot, scans, started_at, settings.threads,
-                                   part(control, relaxed_at, 1.0), found);
-        !status)
-      return fail(status.error());
-    outcome.warnings.insert(outcome.warnings.end(), result->warnings.begin(), result->warnings.end());
+    std::vector<int> added = addedSinceRelaxation(*snapshot, settings, *pins);
+    std::optional<Computed> computed;
+    if (!added.empty()) {
+      auto put_on = relaxNew(snapshot, settings, *pins, added, control);
+      if (!put_on) return fail(put_on.error());
+      computed = std::move(*put_on);
+      if (!computed) {
+        outcome.warnings.emplace_back(
+            "the new scans move the ones before them too far to be put onto these: everything was relaxed");
+        added.clear();
+      }
+    }
+    if (!computed) {
+      auto all = relaxEverything(snapshot, settings, *pins, control);
+      if (!all) return fail(all.error());
+      computed = std::move(*all);
+    }
+    const RelaxationResult* result = &computed->result;
+    outcome.warnings.insert(outcome.warnings.end(), computed->warnings.begin(), computed->warnings.end());
 
     nlohmann::json report = reportOf(*result);
     report["milliseconds"] =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
-    report["registered_first"] = start->registered_first;
+    report["registered_first"] = computed->start.registered_first;
+    report["added"] = added;
+    report["prepared"] = computed->prepared;
     report["method"] = methodName(settings);
     report["pins"] = *pins;
     report["warnings"] = outcome.warnings;
     outcome.report_json = report.dump();
 
-    outcome.edit = editOf(snapshot, std::move(*start), std::move(found), *result);
+    outcome.edit = editOf(snapshot, std::move(computed->start), added, *result);
     return outcome;
   }
 
  private:
+  struct Computed {
+    RelaxStart start;
+    RelaxationResult result;
+    std::vector<std::string> warnings;
+    std::size_t prepared = 0;  // scans
+  };
+
+  Result<Computed> relaxEverything(const SnapshotPtr& snapshot, const RelaxSettings& settings,
+                                   const std::vector<int>& pins, const JobControl& control) const {
+    const double from = snapshot->hasStage(Stage::Pairwise) ? 0.0 : kRegistering;
+    const JobControl registering = part(control, 0.0, from);
+    auto start = startOf(snapshot, settings, held(registering, feed_.get()));
+    if (!start) return fail(start.error());
+    std::vector<int> every(snapshot->scans().size());
+    std::iota(every.begin(), every.end(), 0);
+    const double prepared_at = from + kPreparing * (1.0 - from);
+    auto prepared = prepareScans(*snapshot, every, settings, part(control, from, prepared_at), feed_.get());
+    if (!prepared) return fail(prepared.error());
+
+    Computed computed{.start = std::move(*start), .result = {}, .warnings = {}, .prepared = every.size()};
+    computed.warnings = computed.start.warnings;
+    RelaxationInput input;
+    input.scans = std::move(*prepared);
+    auto consistent = consistentLinks(*snapshot, computed.start.links, computed.start.world_from_scan, pins);
+    if (!consistent) return fail(consistent.error());
+    computed.warnings.insert(computed.warnings.end(), consistent->warnings.begin(),
+                             consistent->warnings.end());
+    input.world_from_scan = std::move(consistent->world_from_scan);
+    input.pins = pins;
+    addLinks(*snapshot, consistent->links, input);
+    return finished(std::move(computed),
+                    runOne(*snapshot, std::move(input), settings, pins, part(control, prepared_at, 1.0)));
+  }
+
+  // Nothing where the added scans move the others too far.
+  Result<std::optional<Computed>> relaxNew(const SnapshotPtr& snapshot, const RelaxSettings& settings,
+                                           const std::vector<int>& pins, const std::vector<int>& added,
+                                           const JobControl& control) const {
+    const JobControl registering = part(control, 0.0, kRegistering);
+    auto start = startOfAdded(snapshot, added, settings, held(registering, feed_.get()));
+    if (!start) return fail(start.error());
+    const std::vector<int> around =
+        scansAround(*snapshot, start->world_from_scan, added, settings.relaxation);
+    const double prepared_at = kRegistering + kPreparing * (1.0 - kRegistering);
+    auto prepared =
+        prepareScans(*snapshot, around, settings, part(control, kRegistering, prepared_at), feed_.get());
+    if (!prepared) return fail(prepared.error());
+
+    Computed computed{.start = std::move(*start), .result = {}, .warnings = {}, .prepared = around.size()};
+    computed.warnings = computed.start.warnings;
+    RelaxationInput input;
+    input.scans = std::move(*prepared);
+    input.world_from_scan = computed.start.world_from_scan;
+    input.pins = pins;
+    std::vector<Link> links = computed.start.links;
+    if (closesLoop(*snapshot, links, added)) {
+      auto consistent = consistentLinks(*snapshot, std::move(links), input.world_from_scan, pins);
+      if (!consistent) return fail(consistent.error());
+      links = std::move(consistent->links);
+      computed.warnings.insert(computed.warnings.end(), consistent->warnings.begin(),
+                               consistent->warnings.end());
+    }
+    addLinks(*snapshot, links, input);
+    const JobControl relaxing = part(control, prepared_at, 1.0);
+    auto result = relaxAdded(*snapshot, input, links, added, around, [&](RelaxationInput of_rings) {
+      return runOne(*snapshot, std::move(of_rings), settings, pins, relaxing);
+    });
+    if (!result) return fail(result.error());
+    if (!*result) return std::optional<Computed>();
+    return finished(std::move(computed), std::move(**result)).map([](Computed whole) {
+      return std::optional(std::move(whole));
+    });
+  }
+
+  Result<RelaxationResult> runOne(const ProjectSnapshot& snapshot, RelaxationInput input,
+                                  const RelaxSettings& settings, const std::vector<int>& pins,
+                                  const JobControl& control) const {
+    if (feed_) feed_->began(beginningOf(snapshot, input.world_from_scan, pins, settings));
+    return relax(std::move(input), settings.relaxation, settings.threads, control,
+                 watchFor(feed_.get(), control.stop));
+  }
+
+  static Result<Computed> finished(Computed computed, Result<RelaxationResult> result) {
+    if (!result) return fail(result.error());
+    computed.warnings.insert(computed.warnings.end(), result->warnings.begin(), result->warnings.end());
+    computed.result = std::move(*result);
+    return computed;
+  }
+
   std::shared_ptr<RelaxationFeed> feed_;  // null: nobody watches
 };
 

@@ -16,10 +16,10 @@ inline constexpr const char* kFoundByRelaxation = "relaxed";
 // origin automatic for each overlapping pair of scans that none of its own joins; those of an earlier
 // relaxation are replaced. Links set by hand pull as they stand; links found by registration do where the
 // surfaces give none now, but for those between scans that are no neighbours in time and that contradict the
-// others, which are left out and named (link_consistency.h); pairs whose link is disabled are left out. Its report has `milliseconds`, `moved`
-// (scan, translation_m, rotation_deg), `unlinked`, `warnings`, and the record: `events`, `links`, `steps`,
-// `rms_m`, `method`, `registered_first`, `pins`. Scans pinned in the project never move, nor do those that
-// the parameter `pin` names.
+// others, which are left out and named (link_consistency.h); pairs whose link is disabled are left out. Its
+// report has `milliseconds`, `moved` (scan, translation_m, rotation_deg), `unlinked`, `warnings`, and the
+// record: `events`, `links`, `steps`, `rms_m`, `method`, `registered_first`, `pins`. Scans pinned in the
+// project never move, nor do those that the parameter `pin` names.
 //
 // A run tells the feed, where there is one, and waits while that is paused; an operation with a feed is for
 // one run. What it computes is the same bits.

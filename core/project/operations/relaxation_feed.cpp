@@ -59,6 +59,7 @@ void RelaxationFeed::notify(std::unique_lock<std::mutex>& lock) {
 void RelaxationFeed::began(RelaxationBeginning beginning) {
   std::unique_lock lock(mutex_);
   news_.began = std::move(beginning);
+  news_.frames.clear();  // of an earlier start
   notify(lock);
 }
 

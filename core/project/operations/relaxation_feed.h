@@ -14,7 +14,7 @@
 
 namespace tiltmap {
 
-// Said once, before the first step. Scans by index from here on.
+// Said before the first step, and again where the work starts over. Scans by index from here on.
 struct RelaxationBeginning {
   std::string method;                 // "joint", "active-set", "sequential"
   std::vector<ScanId> scans;          // the project's, in its order
