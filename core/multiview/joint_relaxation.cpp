@@ -1,25 +1,32 @@
-// All overlapping pairs of scans in one least-squares problem, in two stages.
+// All overlapping pairs of scans in one least-squares problem, in three stages.
 //
 // Closing: pairs whose surfaces do not fit yet at the present poses (the two ends of a loop, whose errors
-// have added up) are registered by themselves, verified, and pull as measured poses; the others pull by their
-// surfaces. Starting the joint problem at a loss scale wide enough for such errors instead lets wrong pairs
-// of surfaces bend what fitted before.
+// have added up) are registered by themselves, verified, and pull as measured poses (misfit_pairs.h); the
+// others pull by their surfaces. Starting the joint problem at a loss scale wide enough for such errors
+// instead lets wrong pairs of surfaces bend what fitted before.
 //
 // Settling: Gauss-Newton over the patch pairs of every link, associations renewed each step, the loss scale
 // narrowed to the data's own.
+//
+// Refining, where scans are blocks with cells: the cells of each scan against the patches of the others. Of
+// two scans that share little, a good part of the patch pairs is wrong, and what they tell misses the truth
+// by many of its deviations; what the cells tell does not. So this begins as soon as every pair is near its
+// place, however far the drive as a whole still has to sway, there is no way back to the patches, and in the
+// end the pairs that too few patches agreed on for a link take part as well.
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <set>
+
+#include <Eigen/Cholesky>
 
 #include "core/base/parallel.h"
 #include "core/multiview/joint_links.h"
-#include "core/multiview/link_counter.h"
+#include "core/multiview/misfit_pairs.h"
 #include "core/multiview/overlap_candidates.h"
 #include "core/multiview/pose_system.h"
 #include "core/multiview/relaxation_engine.h"
-#include "core/registration/registration.h"
+#include "core/multiview/step_lengthening.h"
 #include "core/registration/sampling.h"
 
 namespace tiltmap {
@@ -40,16 +47,13 @@ constexpr double kNarrowBelow_m = 0.005;
 constexpr int kWaitAtMost = 25;
 constexpr int kClosingRounds = 8;
 constexpr int kInnerSteps = 20;
-constexpr int kAttempts = 3;          // at registering one pair by itself
-constexpr double kTryAgain_m = 0.05;  // once it has moved so far since the last attempt
-constexpr double kTryAgain_rad = 0.5 * kDegree;
-constexpr int kLoopLinks = 4;          // as many links or more between its ends make a loop
-constexpr double kLinkError_m = 0.05;  // what each link between may have added to its error
-constexpr double kLinkError_rad = 0.3 * kDegree;
 constexpr double kTurnArm_m = 10.0;  // a turn counts as the shift it makes at this distance
+// Of the poses of two scans against each other.
 constexpr double kRefineBelow_m = 0.005;
 constexpr double kNearlyAll = 0.99;  // of the ties: one of some thousands may sway without end
-constexpr double kFurthest = 6.0;    // a step of the settling is lengthened by at most so much
+// A pair that its patches made no link joins in where its cells ask for no more than this.
+constexpr double kJoinsBelow_m = 0.03;
+constexpr double kJoinsBelow_rad = 0.2 * kDegree;
 
 class JointRelaxation : public RelaxationEngine {
  public:
@@ -66,6 +70,8 @@ class JointRelaxation : public RelaxationEngine {
         r.loss != Loss::Annealed ? 0 : (refines ? kOwnScaleStepsToRefine : kOwnScaleSteps);
     widest_m_ = loss_.scale_m;
     tied_.assign(poses_.size(), 0);
+    for (const PoseConstraint& c : input_.constraints)
+      if (isSettled(c.fixed) && isSettled(c.moving)) misfits_.joined(c.fixed, c.moving);
   }
 
   std::unique_ptr<RelaxationEngine> clone() const override {
@@ -76,12 +82,7 @@ class JointRelaxation : public RelaxationEngine {
     if (stop.stop_requested()) return cancel(report);
     if (closing_) return close(report, stop);
     const bool settling = own_scale_steps_left_ == 0;
-    if (settling && canRefine()) {
-      tellDoing("holding the cells of " + std::to_string(links_.size()) + " pairs of scans against patches");
-      refineLinks(stop);
-      if (stop.stop_requested()) return cancel(report);
-      return settle(report, settling);
-    }
+    if (settling && canRefine()) return refine(report, stop);
     if (!settling || candidates_.empty()) findCandidates(report);
     tellDoing("measuring " + std::to_string(candidates_.size()) + " pairs of scans");
     std::vector<JointLink> links = measureLinks(candidates_, input_.scans, samples_, poses_,
@@ -89,7 +90,6 @@ class JointRelaxation : public RelaxationEngine {
     if (stop.stop_requested()) return cancel(report);
     if (settling) keepChoice(links);
     links_ = std::move(links);
-    link_cells_.clear();
     settle(report, settling);
   }
 
@@ -139,32 +139,23 @@ class JointRelaxation : public RelaxationEngine {
     return some;
   }
 
-  // A pair registered by itself, from the poses it had then.
-  struct Attempt {
-    int count = 0;
-    int links_between = 0;  // the shortest way round, when it was made
-    Pose start;
-    bool succeeded = false;
-    std::size_t pairs = 0;
-    double rms_m = 0.0;
-    StopReason reason = StopReason::TooFewPairs;
-    JointLink found;  // at the pose found
-  };
-
   void close(RelaxationStep& report, const std::stop_token& stop) {
     findCandidates(report);
     tellDoing("measuring " + std::to_string(candidates_.size()) + " pairs of scans");
     if (rounds_ == 0) takeOwnScale(stop);
     std::vector<JointLink> links = measureLinks(candidates_, input_.scans, samples_, poses_,
                                                 settings_.registration, loss_, threads_, stop);
-    std::map<std::pair<int, int>, Attempt> attempts = attempts_;
-    registerMisfits(links, attempts, report, stop);
+    const std::vector<const JointLink*> due = misfits_.due(links);
+    if (!due.empty()) tellDoing("registering " + std::to_string(due.size()) + " pairs that do not fit yet");
+    std::vector<MisfitAttempt> attempts = misfits_.registered(
+        due, links, {input_.scans, samples_, settings_.registration, loss_, threads_}, stop);
     if (stop.stop_requested()) {
       report.events.clear();
       return cancel(report);
     }
+    reportAttempts(due, attempts, report);
+    misfits_.keep(due, std::move(attempts));
     links_ = std::move(links);
-    attempts_ = std::move(attempts);
     // Large motions are not linear: the same quadratic forms are carried along to where the poses go.
     RelaxationEvent solved;
     std::size_t misfits = 0;
@@ -173,7 +164,7 @@ class JointRelaxation : public RelaxationEngine {
     for (int i = 0; i < kInnerSteps; ++i) {
       ties = terms();
       const std::size_t by_surface = ties.size();
-      addMeasured(ties);
+      misfits_.addTerms(links_, poses_, settings_.registration.loss_start_m, ties);
       misfits = ties.size() - by_surface;
       RelaxationEvent inner;
       if (!solve(ties, inner)) return end(report);
@@ -189,41 +180,35 @@ class JointRelaxation : public RelaxationEngine {
     closing_ = misfits > 0 && !at_rest && rounds_ < kClosingRounds;
   }
 
-  // Once scans move against each other by millimetres only; the choice of links stands then, and cells keep
-  // the last word.
   bool canRefine() const {
-    const RegistrationSettings& r = settings_.registration;
-    return r.refine && loss_.isOwn() && !links_.empty() &&
-           (!link_cells_.empty() || last_bent_m_ < kRefineBelow_m);
+    return refinesCells() && loss_.isOwn() && !links_.empty() && (refining_ || last_bent_m_ < kRefineBelow_m);
   }
 
-  // How far the two scans of nearly every tie have moved against each other at most, in m. What scans do in
-  // the world says little: the far end of a long drive sways by centimetres where no pair of scans moves by a
-  // tenth of a millimetre.
-  double bentSince(const std::vector<Pose>& before, const std::vector<PairTerm>& ties) const {
-    if (ties.empty()) return 0.0;
-    std::vector<double> bent;
-    for (const PairTerm& tie : ties) {
-      const auto a = static_cast<std::size_t>(tie.fixed), b = static_cast<std::size_t>(tie.moving);
-      const PoseDifference by = difference(before[a].inverse() * before[b], poses_[a].inverse() * poses_[b]);
-      bent.push_back(std::max(by.translation_m, by.rotation_rad * kTurnArm_m));
-    }
-    const auto nearly_all = static_cast<std::size_t>(kNearlyAll * static_cast<double>(bent.size() - 1) + 0.5);
-    const auto at = bent.begin() + static_cast<std::ptrdiff_t>(nearly_all);
-    std::nth_element(bent.begin(), at, bent.end());
-    return *at;
-  }
-
-  // A link that was not reached when asked to stop is as it was; the step is not taken then.
-  void refineLinks(const std::stop_token& stop) {
+  void refine(RelaxationStep& report, const std::stop_token& stop) {
+    refining_ = true;
+    tellDoing("holding the cells of " + std::to_string(links_.size()) + " pairs of scans against patches");
     link_cells_.resize(links_.size());
+    // A link that was not reached when asked to stop is as it was; the step is not taken then.
     std::vector<JointLink> links = links_;
     parallelFor(links.size(), threads_, [&](std::size_t k) {
-      if (!links[k].used || stop.stop_requested()) return;
+      const bool joins = all_join_ && !links[k].used && !joined_;
+      if ((!links[k].used && !joins) || stop.stop_requested()) return;
       refineLink(links[k], link_cells_[k], pose(links[k].fixed).inverse() * pose(links[k].moving),
                  input_.scans, settings_.registration, loss_);
+      if (joins) links[k].used = holdsByCells(links[k], link_cells_[k]);
     });
-    if (!stop.stop_requested()) links_ = std::move(links);
+    if (stop.stop_requested()) return cancel(report);
+    joined_ = all_join_;
+    links_ = std::move(links);
+    settle(report, true);
+  }
+
+  bool holdsByCells(const JointLink& link, const LinkCells& cells) const {
+    if (cells.cells.size() < static_cast<std::size_t>(settings_.registration.min_pairs) || link.weak == 6)
+      return false;
+    const Vector6d step = -(link.h + kDamping * Matrix6d::Identity()).ldlt().solve(link.b);
+    const PoseDifference by = difference(link.fixed_from_moving, link.fixed_from_moving.moved(step));
+    return by.translation_m < kJoinsBelow_m && by.rotation_rad < kJoinsBelow_rad;
   }
 
   // How well surfaces fit is a matter of the site and the scanner. Neighbours in time have been registered,
@@ -241,74 +226,17 @@ class JointRelaxation : public RelaxationEngine {
     widest_m_ = loss_.scale_m;
   }
 
-  void registerMisfits(const std::vector<JointLink>& links, std::map<std::pair<int, int>, Attempt>& attempts,
-                       RelaxationStep& report, const std::stop_token& stop) const {
-    std::vector<Attempt*> todo;
-    std::vector<const JointLink*> of;
-    LinkCounter counter(poses_.size(), links);
-    for (const PoseConstraint& c : input_.constraints)
-      if (isSettled(c.fixed) && isSettled(c.moving)) counter.join(c.fixed, c.moving);
-    for (const JointLink& link : links) {
-      if (link.used) continue;
-      const int between = counter.linksBetween(link.fixed, link.moving);
-      if (between < kLoopLinks) continue;
-      Attempt& attempt = attempts[{link.fixed, link.moving}];
-      const PoseDifference since = difference(attempt.start, link.fixed_from_moving);
-      const bool anew =
-          attempt.count == 0 ||
-          (!attempt.succeeded && (since.translation_m > kTryAgain_m || since.rotation_rad > kTryAgain_rad));
-      if (!anew || attempt.count >= kAttempts) continue;
-      attempt.links_between = between;
-      todo.push_back(&attempt);
-      of.push_back(&link);
-    }
-    if (!todo.empty()) tellDoing("registering " + std::to_string(todo.size()) + " pairs that do not fit yet");
-    parallelFor(todo.size(), threads_, [&](std::size_t k) { registerByItself(*of[k], *todo[k], stop); });
-    for (std::size_t k = 0; k < todo.size(); ++k) {
+  static void reportAttempts(const std::vector<const JointLink*>& of,
+                             const std::vector<MisfitAttempt>& attempts, RelaxationStep& report) {
+    for (std::size_t k = 0; k < of.size(); ++k) {
       RelaxationEvent event;
       event.kind = RelaxationEventKind::Aligned;
       event.scan = of[k]->moving;
       event.other = of[k]->fixed;
-      event.pairs = todo[k]->pairs;
-      event.rms_m = todo[k]->rms_m;
-      event.text = stopReasonName(todo[k]->reason);
+      event.pairs = attempts[k].pairs;
+      event.rms_m = attempts[k].rms_m;
+      event.text = stopReasonName(attempts[k].reason);
       report.events.push_back(event);
-    }
-  }
-
-  void registerByItself(const JointLink& link, Attempt& attempt, const std::stop_token& stop) const {
-    Registration registration(scanPtr(link.fixed), scanPtr(link.moving), link.fixed_from_moving,
-                              settings_.registration);
-    while (!registration.done()) registration.step(stop);
-    ++attempt.count;
-    attempt.start = link.fixed_from_moving;
-    attempt.pairs = registration.keptPairs();
-    attempt.rms_m = registration.rms();
-    attempt.reason = *registration.stopReason();
-    attempt.succeeded = false;
-    if (!isSuccess(attempt.reason)) return;
-    attempt.found = measureLink(link.fixed, link.moving, registration.fixedFromMoving(), input_.scans,
-                                samples_, settings_.registration, loss_);
-    const PoseDifference off = difference(link.fixed_from_moving, attempt.found.fixed_from_moving);
-    attempt.succeeded = attempt.found.used && off.translation_m <= kLinkError_m * attempt.links_between &&
-                        off.rotation_rad <= kLinkError_rad * attempt.links_between;
-  }
-
-  // Pairs that do not fit at the present poses, but did by themselves. The further off, the less they pull:
-  // one that no other link supports must not bend the rest.
-  void addMeasured(std::vector<PairTerm>& ties) const {
-    for (const JointLink& link : links_) {
-      if (link.used) continue;
-      const auto attempt = attempts_.find({link.fixed, link.moving});
-      if (attempt == attempts_.end() || !attempt->second.succeeded) continue;
-      const JointLink& found = attempt->second.found;
-      const Pose present = pose(link.fixed).inverse() * pose(link.moving);
-      const PoseDifference off = difference(present, found.fixed_from_moving);
-      const double distance = off.translation_m + kTurnArm_m * off.rotation_rad;
-      const double scale = settings_.registration.loss_start_m;
-      const double weight = gemanMcClureWeight(distance * distance, scale * scale);
-      ties.push_back(
-          measuredPoseTerm(link.fixed, link.moving, present, found.fixed_from_moving, weight * found.h));
     }
   }
 
@@ -356,7 +284,7 @@ class JointRelaxation : public RelaxationEngine {
       return false;
     }
     solved.kind = RelaxationEventKind::Solved;
-    if (lengthened) lengthen(*motions);
+    if (lengthened) lengthening_.lengthen(*motions, kTurnArm_m);
     const std::vector<Pose> before = poses_;
     for (std::size_t i = 0; i < poses_.size(); ++i) {
       if (held[i]) continue;
@@ -371,26 +299,21 @@ class JointRelaxation : public RelaxationEngine {
     return true;
   }
 
-  // With a loss, and pairs of elements chosen anew, a step falls short by about the same share each time, and
-  // where a long drive sways that share is nearly all. How the last two steps differ tells it (Irons and Tuck
-  // 1969, Aitken's extrapolation for vectors).
-  void lengthen(std::vector<Vector6d>& motions) {
-    const auto product = [](const Vector6d& a, const Vector6d& b) {
-      return kTurnArm_m * kTurnArm_m * a.head<3>().dot(b.head<3>()) + a.tail<3>().dot(b.tail<3>());
-    };
-    if (last_motions_.size() == motions.size()) {
-      double along = 0.0, square = 0.0;
-      for (std::size_t i = 0; i < motions.size(); ++i) {
-        const Vector6d change = motions[i] - last_motions_[i];
-        along += product(last_motions_[i], change);
-        square += product(change, change);
-      }
-      length_ = square > 0.0 ? std::clamp(-length_ * along / square, 1.0, kFurthest) : 1.0;
-    } else {
-      length_ = 1.0;
+  // How far the two scans of nearly every tie have moved against each other at most, in m. What scans do in
+  // the world says little: the far end of a long drive sways by centimetres where no pair of scans moves by a
+  // tenth of a millimetre.
+  double bentSince(const std::vector<Pose>& before, const std::vector<PairTerm>& ties) const {
+    if (ties.empty()) return 0.0;
+    std::vector<double> bent;
+    for (const PairTerm& tie : ties) {
+      const auto a = static_cast<std::size_t>(tie.fixed), b = static_cast<std::size_t>(tie.moving);
+      const PoseDifference by = difference(before[a].inverse() * before[b], poses_[a].inverse() * poses_[b]);
+      bent.push_back(std::max(by.translation_m, by.rotation_rad * kTurnArm_m));
     }
-    last_motions_ = motions;
-    for (Vector6d& motion : motions) motion *= length_;
+    const auto nearly_all = static_cast<std::size_t>(kNearlyAll * static_cast<double>(bent.size() - 1) + 0.5);
+    const auto at = bent.begin() + static_cast<std::ptrdiff_t>(nearly_all);
+    std::nth_element(bent.begin(), at, bent.end());
+    return *at;
   }
 
   void settle(RelaxationStep& report, bool settling) {
@@ -398,7 +321,7 @@ class JointRelaxation : public RelaxationEngine {
     if (!solve(terms(), solved, true)) return end(report);
     report.events.push_back(solved);
     ++iterations_;
-    updateScale(last_bent_m_);
+    updateScale();
     const RegistrationSettings& r = settings_.registration;
     const bool tiny = solved.translation_m < r.min_translation_m && solved.rotation_rad < r.min_rotation_rad;
     const bool same = std::abs(solved.rms_m - last_rms_m_) < 0.5 * r.min_change * last_rms_m_ &&
@@ -406,7 +329,11 @@ class JointRelaxation : public RelaxationEngine {
                       solved.rotation_rad < 10.0 * r.min_rotation_rad;
     last_rms_m_ = solved.rms_m;
     report.fraction = 0.5 + 0.5 * std::min(0.95, iterations_ / (iterations_ + 4.0));
-    if (settling && (tiny || same)) return end(report);
+    if (settling && (tiny || same)) {
+      if (!refining_ || all_join_) return end(report);
+      all_join_ = true;
+      lengthening_.restart();
+    }
     if (iterations_ >= r.max_iterations) {
       warnings_.push_back("the relaxation was still moving after " + std::to_string(iterations_) +
                           " steps; raise max-iterations, or look at the result");
@@ -426,13 +353,13 @@ class JointRelaxation : public RelaxationEngine {
     solved.loss_scale_m = loss_.scale_m;
   }
 
-  // Not while a loop is still on the move: narrowing then drops links that would come to fit.
-  void updateScale(double moved_m) {
+  // Not while links are still on the move: narrowing then drops those that would come to fit.
+  void updateScale() {
     const RegistrationSettings& r = settings_.registration;
-    if (moved_m > kNarrowBelow_m && ++waited_ <= kWaitAtMost) return;
+    if (last_bent_m_ > kNarrowBelow_m && ++waited_ <= kWaitAtMost) return;
     if (r.loss != Loss::Annealed || own_scale_steps_left_ == 0) return;
     --own_scale_steps_left_;
-    last_motions_.clear();  // another problem
+    lengthening_.restart();
     if (metricOf(r.motion, r.reduction == Reduction::Patches) == Metric::PatchToPatch) {
       loss_ = LossScale::ofOwnDeviation(r.loss_deviations, std::min(ownExcess(links_), widest_m_));
       return;
@@ -506,7 +433,7 @@ class JointRelaxation : public RelaxationEngine {
   bool closing_ = true;
   int rounds_ = 0;
   int waited_ = 0;
-  std::map<std::pair<int, int>, Attempt> attempts_;
+  MisfitPairs misfits_;
   Samples samples_;
   std::vector<std::pair<int, int>> candidates_;
   std::vector<JointLink> links_;
@@ -514,10 +441,11 @@ class JointRelaxation : public RelaxationEngine {
   LossScale loss_;
   double widest_m_ = 0.0;  // of the loss scales of this data
   double last_rms_m_ = 0.0;
-  double last_bent_m_ = std::numeric_limits<double>::infinity();  // by the last step (bentSince)
-  std::vector<LinkCells> link_cells_;                             // of links_, once they are refined
-  std::vector<Vector6d> last_motions_;                            // as solved, before they were lengthened
-  double length_ = 1.0;                                           // of the last step
+  double last_bent_m_ = std::numeric_limits<double>::infinity();  // by the last step, see bentSince
+  bool refining_ = false;
+  bool all_join_ = false, joined_ = false;  // pairs without a link are to take part, and were looked at
+  std::vector<LinkCells> link_cells_;       // of links_, once they are refined
+  StepLengthening lengthening_;
   int own_scale_steps_left_ = 0;
   int iterations_ = 0;
 };

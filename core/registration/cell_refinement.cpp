@@ -15,7 +15,10 @@ namespace {
 
 constexpr float kCellFloor_m = 0.0015F;  // no mean of cells is known better
 constexpr float kGate = 16.0F;           // four deviations, squared
-constexpr float kOutside_m = 0.15F;      // of its outline, a cell still lies on a patch
+// Deviation along the beam of a slanted surface's strikes: as far as the shortness is understood
+// (shortRange).
+constexpr float kMostSpread_m = 0.5F;
+constexpr float kOutside_m = 0.15F;  // of its outline, a cell still lies on a patch
 constexpr double kFewestCells = 1.0;
 constexpr int kMostMotions = 4;
 
@@ -39,6 +42,7 @@ class Binning {
     rule_.floor_square = kCellFloor_m * kCellFloor_m;
     rule_.excess_square = static_cast<float>(excess_m * excess_m);
     rule_.spot_square = static_cast<float>(cells.spot_rad * cells.spot_rad);
+    rule_.most_spread_square = kMostSpread_m * kMostSpread_m;
     rule_.gate_square = kGate;
     rule_.outside_m = kOutside_m;
     rule_.origin = {motion_.m[9], motion_.m[10], motion_.m[11]};

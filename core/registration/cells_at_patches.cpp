@@ -42,7 +42,8 @@ void testCells(const PatchDisc* __restrict discs, std::size_t begin, std::size_t
                                         disc.offset_variance);
     // Truth values are numbers here: the compiler does not put mixed widths side by side.
     cells.lies[i] = truth(u <= disc.reach_u + r.outside_m) * truth(v <= disc.reach_v + r.outside_m) *
-                    truth(towards < -1e-6F) * truth(off * off <= gate) * truth(count_here > 0.0F);
+                    truth(towards < -1e-6F) * truth(share * square <= r.most_spread_square) *
+                    truth(off * off <= gate) * truth(count_here > 0.0F);
     cells.share[i] = share;
     cells.variance[i] = variance;
   }

@@ -12,13 +12,14 @@ namespace tiltmap {
 
 // What a cell on a patch must keep; squares of metres.
 struct CellRule {
-  float noise_square = 0.0F;      // along the beam
-  float floor_square = 0.0F;      // no mean of cells is known better
-  float excess_square = 0.0F;     // of surfaces, beyond what their patches tell
-  float spot_square = 0.0F;       // rad^2, of the cells' light (patch_spot_rad)
-  float gate_square = 0.0F;       // so many deviations, squared
-  float outside_m = 0.0F;         // of a patch's outline, a cell still lies on it
-  std::array<float, 3> origin{};  // of the cells' beams, frame of the patches, m
+  float noise_square = 0.0F;        // along the beam
+  float floor_square = 0.0F;        // no mean of cells is known better
+  float excess_square = 0.0F;       // of surfaces, beyond what their patches tell
+  float spot_square = 0.0F;         // rad^2, of the cells' light (patch_spot_rad)
+  float most_spread_square = 0.0F;  // m^2, of the strikes of that light along the beam
+  float gate_square = 0.0F;         // so many deviations, squared
+  float outside_m = 0.0F;           // of a patch's outline, a cell still lies on it
+  std::array<float, 3> origin{};    // of the cells' beams, frame of the patches, m
 };
 
 // Cells, each with a patch that it is held against. One cell may stand here several times.
