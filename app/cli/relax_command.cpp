@@ -53,7 +53,7 @@ std::string eventsAndTable(const nlohmann::json& report) {
 // What scripts are promised; the record only when asked for, as it grows with the steps and the links.
 nlohmann::json promised(const nlohmann::json& report) {
   nlohmann::json object;
-  for (const char* key : {"milliseconds", "moved", "unlinked", "warnings"}) object[key] = report[key];
+  for (const char* key : {"milliseconds", "moved", "unlinked", "added", "warnings"}) object[key] = report[key];
   return object;
 }
 

@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/text.h"
+
 namespace tiltmap {
 
 namespace {
@@ -18,8 +20,16 @@ std::array<double, 7> numbersOf(const Pose& pose) {
   return {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
 }
 
+template <std::size_t N>
+std::array<double, N> numbersOf(const json& from) {
+  if (!from.is_array() || from.size() != N) throw std::invalid_argument("not as many numbers");
+  std::array<double, N> numbers;
+  for (std::size_t i = 0; i < N; ++i) numbers[i] = exactNumberOf(from[i]);
+  return numbers;
+}
+
 Pose poseOf(const json& from) {
-  const auto n = from.get<std::array<double, 7>>();
+  const auto n = numbersOf<7>(from);
   return Pose::restored(Eigen::Quaterniond(n[6], n[3], n[4], n[5]), {n[0], n[1], n[2]});
 }
 
@@ -34,7 +44,7 @@ json ofJson(const JudgedOf& of) {
 }
 
 Matrix6d covarianceOf(const json& from) {
-  const auto lower = from.get<std::array<double, 21>>();
+  const auto lower = numbersOf<21>(from);
   Matrix6d covariance;
   std::size_t next = 0;
   for (int r = 0; r < 6; ++r)
@@ -56,7 +66,26 @@ void requireFinite(const json& figures) {
   for (const auto& inner : figures) requireFinite(inner);
 }
 
+json exact(const json& value) {
+  if (value.is_number_float()) return exactNumber(value.get<double>());
+  json copy = value;
+  if (value.is_structured())
+    for (auto& inner : copy) inner = exact(inner);
+  return copy;
+}
+
 }  // namespace
+
+json exactNumber(double value) {
+  return std::isfinite(value) ? json(value) : json(shortestReal(value));
+}
+
+double exactNumberOf(const json& value) {
+  if (!value.is_string()) return value.get<double>();
+  const auto number = parseReal(value.get<std::string>());
+  if (!number) throw std::invalid_argument("no number");
+  return *number;
+}
 
 json judgementJson(const PairJudgement& j) {
   json covariance = json::array();
@@ -119,11 +148,39 @@ json linkJson(const ProjectSnapshot& snapshot, const Link& link, const LinkJudge
           {"stop_reason", link.stop_reason}};
 }
 
+json wholeJudgement(const PairJudgement& judgement) {
+  json whole = exact(judgementJson(judgement));
+  whole["pull_rad"] = exactNumber(judgement.pull_rad);  // degrees and back are not the same number
+  return whole;
+}
+
+PairJudgement judgementOf(const json& whole, const Pose& fixed_from_moving) {
+  PairJudgement j;
+  const auto number = [&whole](const char* key, double& value) { value = exactNumberOf(whole.at(key)); };
+  j.verdict = verdictOf(whole.at("verdict").get<std::string>());
+  whole.at("reason").get_to(j.reason);
+  number("badness", j.badness);
+  number("overlap_fixed", j.overlap_fixed);
+  number("overlap_moving", j.overlap_moving);
+  number("fit", j.fit);
+  number("through", j.through);
+  whole.at("seen").get_to(j.seen);
+  number("residual_m", j.residual_m);
+  number("expected_m", j.expected_m);
+  number("excess_m", j.excess_m);
+  number("pull_m", j.pull_m);
+  number("pull_rad", j.pull_rad);
+  j.start = poseOf(whole.at("start"));
+  j.moved = difference(j.start, fixed_from_moving);
+  j.strength = strengthOfCovariance(covarianceOf(whole.at("covariance")));
+  whole.at("strength").get_to(j.strength_sentence);
+  return j;
+}
+
 std::string storedJudgement(const PairJudgement& judgement, const JudgedOf& of) {
-  json stored = judgementJson(judgement);
+  requireFinite(judgementJson(judgement));
+  json stored = wholeJudgement(judgement);
   stored["of"] = ofJson(of);
-  stored["pull_rad"] = judgement.pull_rad;  // degrees and back are not the same number
-  requireFinite(stored);
   return stored.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -131,25 +188,7 @@ std::shared_ptr<const PairJudgement> restoredJudgement(const std::string& stored
   try {
     const json from = json::parse(stored);
     if (from.at("of") != ofJson(of)) return nullptr;
-    auto j = std::make_shared<PairJudgement>();
-    j->verdict = verdictOf(from.at("verdict").get<std::string>());
-    from.at("reason").get_to(j->reason);
-    from.at("badness").get_to(j->badness);
-    from.at("overlap_fixed").get_to(j->overlap_fixed);
-    from.at("overlap_moving").get_to(j->overlap_moving);
-    from.at("fit").get_to(j->fit);
-    from.at("through").get_to(j->through);
-    from.at("seen").get_to(j->seen);
-    from.at("residual_m").get_to(j->residual_m);
-    from.at("expected_m").get_to(j->expected_m);
-    from.at("excess_m").get_to(j->excess_m);
-    from.at("pull_m").get_to(j->pull_m);
-    from.at("pull_rad").get_to(j->pull_rad);
-    j->start = poseOf(from.at("start"));
-    j->moved = difference(j->start, of.fixed_from_moving);
-    j->strength = strengthOfCovariance(covarianceOf(from.at("covariance")));
-    from.at("strength").get_to(j->strength_sentence);
-    return j;
+    return std::make_shared<const PairJudgement>(judgementOf(from, of.fixed_from_moving));
   } catch (const std::exception&) {  // of nlohmann, or no verdict
     return nullptr;
   }

@@ -32,6 +32,16 @@ struct JudgedOf {
   Scan fixed, moving;
   Pose fixed_from_moving;
 };
+// JSON knows no infinity: such numbers become words that exactNumberOf reads. It throws std::invalid_argument
+// or an exception of nlohmann's for what is no number.
+nlohmann::json exactNumber(double value);
+double exactNumberOf(const nlohmann::json& value);
+
+// All of it, to come back bit for bit with the link's pose, infinities too; but for the milliseconds.
+nlohmann::json wholeJudgement(const PairJudgement& judgement);
+// Throws std::invalid_argument or an exception of nlohmann's for what is no judgement.
+PairJudgement judgementOf(const nlohmann::json& whole, const Pose& fixed_from_moving);
+
 // Throws std::invalid_argument for a figure that is not finite.
 std::string storedJudgement(const PairJudgement& judgement, const JudgedOf& of);
 // Null for the judgement of something else, and for what is no judgement: it can be made again.

@@ -20,6 +20,7 @@
 #include "tests/benchmarks/pair_run.h"
 #include "tests/benchmarks/pair_sets.h"
 #include "tests/benchmarks/program_run.h"
+#include "tests/benchmarks/survey_run.h"
 #include "tests/benchmarks/verdict_run.h"
 #include "tests/benchmarks/window_run.h"
 
@@ -28,7 +29,7 @@ namespace tiltmap::benchmarks {
 namespace {
 
 const std::vector<std::string> kBlocks = {"operations", "pairs",   "drives", "ablations", "real",
-                                          "program",    "capture", "window", "verdict"};
+                                          "program",    "capture", "window", "verdict",   "survey"};
 
 struct Options {
   std::vector<std::string> blocks = kBlocks;
@@ -178,6 +179,8 @@ int measure(const Options& options, std::pair<int, int> seeds, std::pair<int, in
     kept = addVerdictRows(table, seeds, tell) && kept;
     kept = addStopRows(table, seeds, tell) && kept;
   }
+  if (blocks.contains("survey"))
+    kept = addSurveyRows(table, options.program, std::string(options.scratch) + "-survey", tell) && kept;
   table.heading.push_back("load      " + loadAverage() + " at the end");
   if (options.json)
     std::cout << table.json().dump(2) << '\n';

@@ -42,6 +42,7 @@ Ended run(const fs::path& program, const Arguments& arguments, const fs::path& s
     int status = 0;
     rusage usage{};
     if (wait4(child, &status, 0, &usage) == child && WIFEXITED(status)) ended.exit_code = WEXITSTATUS(status);
+    ended.peak_mb = static_cast<double>(usage.ru_maxrss) / 1024.0;
     ended.timing.cpu_ms = milliseconds(usage.ru_utime) + milliseconds(usage.ru_stime);
   }
   ended.timing.wall_ms =

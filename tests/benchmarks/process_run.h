@@ -14,6 +14,7 @@ using Arguments = std::vector<std::string>;
 struct Ended {
   int exit_code = -1;  // -1: could not be started, or ended by a signal
   Timing timing;
+  double peak_mb = 0.0;  // of its resident memory
   std::string output;  // standard output
 };
 

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
@@ -12,6 +11,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/text.h"
+#include "core/project/judgement_json.h"
 
 namespace tiltmap {
 
@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view kFirstLine = "tiltmap registration part 1";
+constexpr std::string_view kFirstLine = "tiltmap registration part 2";
 constexpr std::string_view kFirstWords = "tiltmap registration part ";
 constexpr const char* kMakeAgain = "make this part again with `tiltmap register --shard`";
 
@@ -51,21 +51,10 @@ std::string printOf(std::string_view bytes) {
   return print.text();
 }
 
-// JSON knows no infinity.
-json numberJson(double value) {
-  return std::isfinite(value) ? json(value) : json(shortestReal(value));
-}
-double numberOf(const json& value) {
-  if (!value.is_string()) return value.get<double>();
-  const auto number = parseReal(value.get<std::string>());
-  if (!number) throw std::invalid_argument("no number");
-  return *number;
-}
-
 template <class Matrix>
 json matrixJson(const Matrix& matrix) {
   json numbers = json::array();
-  for (Eigen::Index i = 0; i < matrix.size(); ++i) numbers.push_back(numberJson(matrix.data()[i]));
+  for (Eigen::Index i = 0; i < matrix.size(); ++i) numbers.push_back(exactNumber(matrix.data()[i]));
   return numbers;
 }
 template <class Matrix>
@@ -73,7 +62,7 @@ Matrix matrixOf(const json& numbers) {
   Matrix matrix;
   if (numbers.size() != static_cast<std::size_t>(matrix.size())) throw std::invalid_argument("wrong size");
   for (Eigen::Index i = 0; i < matrix.size(); ++i)
-    matrix.data()[i] = numberOf(numbers[static_cast<std::size_t>(i)]);
+    matrix.data()[i] = exactNumberOf(numbers[static_cast<std::size_t>(i)]);
   return matrix;
 }
 
@@ -95,60 +84,6 @@ void resultNumbers(Result& r, Visit&& visit) {
   visit("agreement", r.agreement);
   visit("milliseconds", r.milliseconds);
 }
-template <class Judgement, class Visit>
-void judgementNumbers(Judgement& j, Visit&& visit) {
-  visit("badness", j.badness);
-  visit("overlap_moving", j.overlap_moving);
-  visit("overlap_fixed", j.overlap_fixed);
-  visit("fit", j.fit);
-  visit("through", j.through);
-  visit("residual", j.residual_m);
-  visit("expected", j.expected_m);
-  visit("excess", j.excess_m);
-  visit("pull", j.pull_m);
-  visit("pull_turn", j.pull_rad);
-  visit("moved", j.moved.translation_m);
-  visit("moved_turn", j.moved.rotation_rad);
-  visit("milliseconds", j.milliseconds);
-  visit("pitch", j.strength.pitch_rad);
-  visit("roll", j.strength.roll_rad);
-  visit("heading", j.strength.heading_rad);
-  visit("right", j.strength.right_m);
-  visit("forward", j.strength.forward_m);
-  visit("up", j.strength.up_m);
-  visit("weakest", j.strength.weakest_m);
-  visit("weakest_turn", j.strength.weakest_rad);
-}
-
-json judgementJson(const PairJudgement& j) {
-  json out = {{"verdict", static_cast<int>(j.verdict)},
-              {"reason", j.reason},
-              {"seen", j.seen},
-              {"strength", j.strength_sentence},
-              {"start", poseJson(j.start)},
-              {"covariance", matrixJson(j.strength.covariance)},
-              {"weakest_direction", matrixJson(j.strength.weakest)},
-              {"weakest_axis", matrixJson(j.strength.turn)}};
-  judgementNumbers(j, [&out](const char* key, double value) { out[key] = numberJson(value); });
-  return out;
-}
-
-PairJudgement judgementOf(const json& in) {
-  PairJudgement j;
-  const int verdict = in.at("verdict").get<int>();
-  if (verdict < 0 || verdict > 2) throw std::invalid_argument("no verdict");
-  j.verdict = static_cast<Verdict>(verdict);
-  j.reason = in.at("reason").get<std::string>();
-  j.seen = in.at("seen").get<std::size_t>();
-  j.strength_sentence = in.at("strength").get<std::string>();
-  j.start = poseOf(in.at("start"));
-  j.strength.covariance = matrixOf<Matrix6d>(in.at("covariance"));
-  j.strength.weakest = matrixOf<Eigen::Vector3d>(in.at("weakest_direction"));
-  j.strength.turn = matrixOf<Eigen::Vector3d>(in.at("weakest_axis"));
-  judgementNumbers(j, [&in](const char* key, double& value) { value = numberOf(in.at(key)); });
-  return j;
-}
-
 json pairJson(const RegisteredPair& pair) {
   const PairResult& r = pair.result;
   json out = {{"fixed", pair.fixed},
@@ -160,9 +95,10 @@ json pairJson(const RegisteredPair& pair) {
               {"correspondences", r.correspondences},
               {"ended", stopReasonName(r.stop_reason)},
               {"information", matrixJson(r.information)},
-              {"pair_milliseconds", numberJson(pair.milliseconds)},
-              {"judgement", judgementJson(pair.judgement)}};
-  resultNumbers(r, [&out](const char* key, double value) { out[key] = numberJson(value); });
+              {"pair_milliseconds", exactNumber(pair.milliseconds)},
+              {"judgement", wholeJudgement(pair.judgement)},
+              {"judging_milliseconds", exactNumber(pair.judgement.milliseconds)}};
+  resultNumbers(r, [&out](const char* key, double value) { out[key] = exactNumber(value); });
   return out;
 }
 
@@ -184,9 +120,10 @@ RegisteredPair pairOf(const json& in) {
   r.correspondences = in.at("correspondences").get<std::size_t>();
   r.stop_reason = stopReasonOf(in.at("ended").get<std::string>());
   r.information = matrixOf<Matrix6d>(in.at("information"));
-  pair.milliseconds = numberOf(in.at("pair_milliseconds"));
-  pair.judgement = judgementOf(in.at("judgement"));
-  resultNumbers(r, [&in](const char* key, double& value) { value = numberOf(in.at(key)); });
+  pair.milliseconds = exactNumberOf(in.at("pair_milliseconds"));
+  pair.judgement = judgementOf(in.at("judgement"), r.fixed_from_moving);
+  pair.judgement.milliseconds = exactNumberOf(in.at("judging_milliseconds"));
+  resultNumbers(r, [&in](const char* key, double& value) { value = exactNumberOf(in.at(key)); });
   return pair;
 }
 
@@ -202,7 +139,7 @@ RegistrationPart partOf(const json& in) {
   part.scans = in.at("scans").get<std::vector<std::string>>();
   part.started = in.at("started").get<std::string>();
   part.finished = in.at("finished").get<std::string>();
-  part.milliseconds = numberOf(in.at("milliseconds"));
+  part.milliseconds = exactNumberOf(in.at("milliseconds"));
   for (const json& pair : in.at("pairs")) part.pairs.push_back(pairOf(pair));
   return part;
 }
@@ -269,7 +206,7 @@ Status writeRegistrationPart(const RegistrationPart& part, const std::filesystem
                {"scans", part.scans},
                {"started", part.started},
                {"finished", part.finished},
-               {"milliseconds", numberJson(part.milliseconds)},
+               {"milliseconds", exactNumber(part.milliseconds)},
                {"pairs", json::array()}};
   for (const RegisteredPair& pair : part.pairs) body["pairs"].push_back(pairJson(pair));
   const std::string text = body.dump(-1, ' ', false, json::error_handler_t::replace);

@@ -46,31 +46,6 @@ std::string methodName(const RelaxSettings& settings) {
   return std::get<std::string>(relaxationParameters().values(settings.relaxation).at("method"));
 }
 
-// Those named; scans without elements stand for the others.
-Result<std::vector<PreparedScanPtr>> prepareScans(const ProjectSnapshot& snapshot,
-                                                  const std::vector<int>& which,
-                                                  const RelaxSettings& settings, const JobControl& control,
-                                                  RelaxationFeed* feed) {
-  std::vector<Result<PreparedScanPtr>> slots(which.size(), PreparedScanPtr());
-  std::atomic<std::size_t> done = 0;
-  parallelFor(which.size(), settings.threads, [&](std::size_t k) {
-    if (feed) feed->waitWhilePaused(control.stop);
-    if (control.stopRequested()) return;
-    slots[k] = snapshot.scans()[static_cast<std::size_t>(which[k])].scan().map(
-        [&](const Scan& scan) { return prepare(scan, settings.relaxation.registration); });
-    control.tell(static_cast<double>(++done) / static_cast<double>(which.size()),
-                 "preparing scan " + std::to_string(which[k]));
-  });
-  if (control.stopRequested())
-    return fail(kCancelled, "relax", "nothing was changed; start it again when you like");
-  std::vector<PreparedScanPtr> prepared(snapshot.scans().size(), std::make_shared<const PreparedScan>());
-  for (std::size_t k = 0; k < which.size(); ++k) {
-    if (!slots[k]) return fail(slots[k].error());
-    prepared[static_cast<std::size_t>(which[k])] = *slots[k];
-  }
-  return prepared;
-}
-
 // Scans with a link that says more than one found here would: set by hand, disabled, or registered with
 // success.
 JoinedPairs linked(const std::vector<Link>& links) {
@@ -323,7 +298,7 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
     std::vector<int> every(snapshot->scans().size());
     std::iota(every.begin(), every.end(), 0);
     const double prepared_at = from + kPreparing * (1.0 - from);
-    auto prepared = prepareScans(*snapshot, every, settings, part(control, from, prepared_at), feed_.get());
+    auto prepared = preparedScans(*snapshot, every, settings, part(control, from, prepared_at), feed_.get());
     if (!prepared) return fail(prepared.error());
 
     Computed computed{.start = std::move(*start), .result = {}, .warnings = {}, .prepared = every.size()};
@@ -352,7 +327,7 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
         scansAround(*snapshot, start->world_from_scan, added, settings.relaxation);
     const double prepared_at = kRegistering + kPreparing * (1.0 - kRegistering);
     auto prepared =
-        prepareScans(*snapshot, around, settings, part(control, kRegistering, prepared_at), feed_.get());
+        preparedScans(*snapshot, around, settings, part(control, kRegistering, prepared_at), feed_.get());
     if (!prepared) return fail(prepared.error());
 
     Computed computed{.start = std::move(*start), .result = {}, .warnings = {}, .prepared = around.size()};

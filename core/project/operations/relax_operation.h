@@ -18,8 +18,11 @@ inline constexpr const char* kFoundByRelaxation = "relaxed";
 // surfaces give none now, but for those between scans that are no neighbours in time and that contradict the
 // others, which are left out and named (link_consistency.h); pairs whose link is disabled are left out. Its
 // report has `milliseconds`, `moved` (scan, translation_m, rotation_deg), `unlinked`, `warnings`, and the
-// record: `events`, `links`, `steps`, `rms_m`, `method`, `registered_first`, `pins`. Scans pinned in the
-// project never move, nor do those that the parameter `pin` names.
+// record: `events`, `links`, `steps`, `rms_m`, `method`, `registered_first`, `pins`, `prepared` (scans).
+// Scans pinned in the project never move, nor do those that the parameter `pin` names.
+//
+// Where only scans have come since the last relaxation (addedSinceRelaxation), these alone (the report's
+// `added`) are registered and put onto the others (relax_increment.h); links that do not concern them stay.
 //
 // A run tells the feed, where there is one, and waits while that is paused; an operation with a feed is for
 // one run. What it computes is the same bits.

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <stdexcept>
 
+#include "core/base/parallel.h"
 #include "core/project/link_what_if.h"
 #include "core/project/operations/register_operation.h"
 #include "core/project/operations/relax_operation.h"
@@ -192,6 +194,30 @@ Result<RelaxStart> startOfAdded(const SnapshotPtr& snapshot, const std::vector<i
         relaxed ? *relaxed : start.world_from_scan[i - 1] * (pairwise[i - 1].inverse() * pairwise[i]));
   }
   return start;
+}
+
+Result<std::vector<PreparedScanPtr>> preparedScans(const ProjectSnapshot& snapshot,
+                                                   const std::vector<int>& which,
+                                                   const RelaxSettings& settings, const JobControl& control,
+                                                   RelaxationFeed* feed) {
+  std::vector<Result<PreparedScanPtr>> slots(which.size(), PreparedScanPtr());
+  std::atomic<std::size_t> done = 0;
+  parallelFor(which.size(), settings.threads, [&](std::size_t k) {
+    if (feed) feed->waitWhilePaused(control.stop);
+    if (control.stopRequested()) return;
+    slots[k] = snapshot.scans()[static_cast<std::size_t>(which[k])].scan().map(
+        [&](const Scan& scan) { return prepare(scan, settings.relaxation.registration); });
+    control.tell(static_cast<double>(++done) / static_cast<double>(which.size()),
+                 "preparing scan " + std::to_string(which[k]));
+  });
+  if (control.stopRequested())
+    return fail(kCancelled, "relax", "nothing was changed; start it again when you like");
+  std::vector<PreparedScanPtr> prepared(snapshot.scans().size(), std::make_shared<const PreparedScan>());
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    if (!slots[k]) return fail(slots[k].error());
+    prepared[static_cast<std::size_t>(which[k])] = *slots[k];
+  }
+  return prepared;
 }
 
 }  // namespace tiltmap

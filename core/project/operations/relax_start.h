@@ -9,6 +9,7 @@
 #include "core/base/progress.h"
 #include "core/multiview/relaxation.h"
 #include "core/project/operation.h"
+#include "core/project/operations/relaxation_feed.h"
 
 namespace tiltmap {
 
@@ -63,5 +64,12 @@ std::vector<int> addedSinceRelaxation(const ProjectSnapshot& snapshot, const Rel
 // first where nobody has tried it.
 Result<RelaxStart> startOfAdded(const SnapshotPtr& snapshot, const std::vector<int>& added,
                                 const RelaxSettings& settings, const JobControl& control);
+
+// The scans that are named, prepared; scans without elements stand for the others. Waits while the feed,
+// where there is one, is paused.
+Result<std::vector<PreparedScanPtr>> preparedScans(const ProjectSnapshot& snapshot,
+                                                   const std::vector<int>& which,
+                                                   const RelaxSettings& settings, const JobControl& control,
+                                                   RelaxationFeed* feed);
 
 }  // namespace tiltmap
