@@ -13,6 +13,7 @@
 
 #include "core/base/parallel.h"
 #include "core/multiview/relaxation.h"
+#include "core/project/link_judgement.h"
 #include "core/project/operations/index_list.h"
 #include "core/project/operations/link_consistency.h"
 #include "core/project/operations/relax_increment.h"
@@ -22,9 +23,11 @@ namespace tiltmap {
 
 namespace {
 
-// Registering the pairs first, where nobody has, and preparing the scans, as shares of the progress.
+// Registering the pairs first, where nobody has, preparing the scans, and judging what was found, as shares
+// of the progress that is left then.
 constexpr double kRegistering = 0.4;
 constexpr double kPreparing = 0.3;
+constexpr double kJudging = 0.1;
 
 // Those of the project and those of the parameter, ascending.
 Result<std::vector<int>> pinsOf(const ProjectSnapshot& snapshot, const RelaxSettings& settings) {
@@ -144,9 +147,30 @@ nlohmann::json reportOf(const RelaxationResult& result) {
   return report;
 }
 
+// Holds the scans of each link that was found against each other: it stands in the table beside registered
+// ones, and can be trusted or not as they can.
+Status judgeFound(const ProjectSnapshot& snapshot, const std::vector<PreparedScanPtr>& scans,
+                  const std::vector<Pose>& world_from_scan, int threads, const JobControl& control,
+                  std::vector<Link>& found) {
+  std::vector<PairToJudge> pairs;
+  for (const Link& link : found) {
+    PairToJudge pair{snapshot.indexOf(link.fixed).value(), snapshot.indexOf(link.moving).value(), {}};
+    pair.claim.fixed_from_moving = link.fixed_from_moving;
+    pair.claim.start = world_from_scan[pair.fixed].inverse() * world_from_scan[pair.moving];
+    pairs.push_back(std::move(pair));
+  }
+  auto judged = judgePairs(
+      pairs, [&](std::size_t i) { return Result<JudgedScanPtr>(judgedScan(scans[i])); }, threads, {},
+      control);
+  if (!judged) return fail(judged.error());
+  for (std::size_t k = 0; k < found.size(); ++k)
+    found[k].judgement = std::make_shared<const PairJudgement>(std::move((*judged)[k]));
+  return {};
+}
+
 // Poses and links as one edit, with those of the registration that came first.
 ProjectEdit editOf(const SnapshotPtr& snapshot, RelaxStart start, const std::vector<int>& added,
-                   const RelaxationResult& result) {
+                   std::vector<Link> found, const RelaxationResult& result) {
   std::vector<std::pair<ScanId, Pose>> poses;
   for (std::size_t i = 0; i < result.poses.size(); ++i)
     poses.emplace_back(snapshot->scans()[i].id, result.poses[i]);
@@ -156,7 +180,6 @@ ProjectEdit editOf(const SnapshotPtr& snapshot, RelaxStart start, const std::vec
   if (start.registered_first) edit.title = "register and " + edit.title;
   edit.steps.insert(edit.steps.begin(), std::make_move_iterator(start.steps.begin()),
                     std::make_move_iterator(start.steps.end()));
-  std::vector<Link> found = newLinks(*snapshot, start.links, result);
   // First, while they are surely there.
   if (auto stale = staleLinks(*snapshot, added, found); !stale.empty())
     edit.steps.insert(edit.steps.begin(), DeleteLinks{std::move(stale)});
@@ -277,7 +300,7 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
     report["warnings"] = outcome.warnings;
     outcome.report_json = report.dump();
 
-    outcome.edit = editOf(snapshot, std::move(computed->start), added, *result);
+    outcome.edit = editOf(snapshot, std::move(computed->start), added, std::move(computed->found), *result);
     return outcome;
   }
 
@@ -287,6 +310,7 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
     RelaxationResult result;
     std::vector<std::string> warnings;
     std::size_t prepared = 0;  // scans
+    std::vector<Link> found = {};
   };
 
   Result<Computed> relaxEverything(const SnapshotPtr& snapshot, const RelaxSettings& settings,
@@ -312,8 +336,12 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
     input.world_from_scan = std::move(consistent->world_from_scan);
     input.pins = pins;
     addLinks(*snapshot, consistent->links, input);
-    return finished(std::move(computed),
-                    runOne(*snapshot, std::move(input), settings, pins, part(control, prepared_at, 1.0)));
+    const std::vector<PreparedScanPtr> scans = input.scans;
+    const std::vector<Pose> started_at = input.world_from_scan;
+    const double relaxed_at = 1.0 - kJudging * (1.0 - prepared_at);
+    auto result = runOne(*snapshot, std::move(input), settings, pins, part(control, prepared_at, relaxed_at));
+    return finished(*snapshot, std::move(computed), std::move(result), scans, started_at, settings.threads,
+                    part(control, relaxed_at, 1.0));
   }
 
   // Nothing where the added scans move the others too far.
@@ -345,15 +373,16 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
                                consistent->warnings.end());
     }
     addLinks(*snapshot, links, input);
-    const JobControl relaxing = part(control, prepared_at, 1.0);
+    const double relaxed_at = 1.0 - kJudging * (1.0 - prepared_at);
+    const JobControl relaxing = part(control, prepared_at, relaxed_at);
     auto result = relaxAdded(*snapshot, input, links, added, around, [&](RelaxationInput of_rings) {
       return runOne(*snapshot, std::move(of_rings), settings, pins, relaxing);
     });
     if (!result) return fail(result.error());
     if (!*result) return std::optional<Computed>();
-    return finished(std::move(computed), std::move(**result)).map([](Computed whole) {
-      return std::optional(std::move(whole));
-    });
+    return finished(*snapshot, std::move(computed), std::move(**result), input.scans, input.world_from_scan,
+                    settings.threads, part(control, relaxed_at, 1.0))
+        .map([](Computed whole) { return std::optional(std::move(whole)); });
   }
 
   Result<RelaxationResult> runOne(const ProjectSnapshot& snapshot, RelaxationInput input,
@@ -364,8 +393,14 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
                  watchFor(feed_.get(), control.stop));
   }
 
-  static Result<Computed> finished(Computed computed, Result<RelaxationResult> result) {
+  static Result<Computed> finished(const ProjectSnapshot& snapshot, Computed computed,
+                                   Result<RelaxationResult> result, const std::vector<PreparedScanPtr>& scans,
+                                   const std::vector<Pose>& started_at, int threads,
+                                   const JobControl& judging) {
     if (!result) return fail(result.error());
+    computed.found = newLinks(snapshot, computed.start.links, *result);
+    if (Status status = judgeFound(snapshot, scans, started_at, threads, judging, computed.found); !status)
+      return fail(status.error());
     computed.warnings.insert(computed.warnings.end(), result->warnings.begin(), result->warnings.end());
     computed.result = std::move(*result);
     return computed;
