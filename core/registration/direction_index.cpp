@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 namespace tiltmap {
 
@@ -76,6 +77,8 @@ DirectionIndex::DirectionIndex(std::span<const Eigen::Vector3d> positions, doubl
 
 std::uint32_t DirectionIndex::nearestFitting(const Eigen::Vector3d& p, const Eigen::Vector3d& normal,
                                              double min_cos) const {
+  if (lanes_.x.size() != items_.size())
+    throw std::logic_error("DirectionIndex::nearestFitting: it was made without normals");
   constexpr std::size_t kMost = 256;
   std::array<float, kMost> keys;
   const Eigen::Vector3f at = p.cast<float>(), n = normal.cast<float>();

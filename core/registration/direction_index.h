@@ -23,7 +23,8 @@ class DirectionIndex {
 
   static constexpr std::uint32_t kNobody = 0xffffffffU;
   // Of the elements around the direction of `p`, the nearest whose normal makes an angle of at least the
-  // cosine with `normal`; where none does, the nearest; kNobody where there are none.
+  // cosine with `normal`; where none does, the nearest; kNobody where there are none. Throws std::logic_error
+  // where it was made without normals.
   std::uint32_t nearestFitting(const Eigen::Vector3d& p, const Eigen::Vector3d& normal, double min_cos) const;
 
   // Calls visit(first, last), pointers to element indices, for the up to nine buckets around the direction of

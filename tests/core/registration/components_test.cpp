@@ -22,8 +22,8 @@ PreparedScan scanOf(std::vector<V> positions, std::vector<V> normals) {
   scan.elements.normal = std::move(normals);
   if (!scan.elements.empty()) {
     scan.tree.emplace(scan.elements.position);
-    scan.directions.emplace(scan.elements.position, 3.0 * kDegree);
-    scan.wide_directions.emplace(scan.elements.position, 9.0 * kDegree);
+    scan.directions.emplace(scan.elements.position, 3.0 * kDegree, scan.elements.normal);
+    scan.wide_directions.emplace(scan.elements.position, 9.0 * kDegree, scan.elements.normal);
   }
   return scan;
 }
@@ -113,6 +113,7 @@ TEST(DirectionIndex, FindsEverythingWithinABucketOfTheDirection) {
   points.push_back(V::Zero());  // in no bucket
   const double bucket = 3.0 * kDegree;
   const DirectionIndex index(points, bucket);
+  EXPECT_THROW(index.nearestFitting(points.front(), V::UnitX(), 0.5), std::logic_error);
   for (int k = 0; k < 300; ++k) {
     V query = V(random.normal(), random.normal(), random.normal()).normalized();
     if (k == 0) query = V::UnitZ();
