@@ -9,12 +9,15 @@ using Eigen::Vector3d;
 // The eight corners of a box around most points, and the stops.
 std::vector<Vector3d> Scene::Parts::extentPoints(const std::vector<ScanId>& scans,
                                                  const PointBox* within) const {
+  // Of many scans fewer points each: this is asked for whenever some have been read.
+  constexpr std::size_t kPoints = 400'000, kOfOneScan = 2000;
+  const std::size_t of_one = std::min(kOfOneScan, kPoints / std::max<std::size_t>(clouds.size(), 1) + 1);
   std::array<std::vector<double>, 3> along;
   for (const auto& cloud : clouds) {
     if (scans.empty() ? !cloud->batch.visible
                       : std::find(scans.begin(), scans.end(), cloud->points.scan) == scans.end())
       continue;
-    for (const std::uint32_t i : evenlyStrided(cloud->points.size(), 2000)) {
+    for (const std::uint32_t i : evenlyStrided(cloud->points.size(), of_one)) {
       const Vector3d p = cloud->at(i);
       if (within && !within->contains(p)) continue;
       for (std::size_t axis = 0; axis < 3; ++axis) along[axis].push_back(p[static_cast<int>(axis)]);
@@ -33,11 +36,15 @@ std::vector<Vector3d> Scene::Parts::extentPoints(const std::vector<ScanId>& scan
   Vector3d low, high;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     auto& values = along[axis];
-    std::sort(values.begin(), values.end());
     // What one beam in fifty hit far away must not make everything else small.
     const std::size_t cut = values.size() / 50;
-    low[static_cast<int>(axis)] = values[cut];
-    high[static_cast<int>(axis)] = values[values.size() - 1 - cut];
+    const auto ranked = [&values](std::size_t rank) {
+      const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank);
+      std::nth_element(values.begin(), at, values.end());
+      return *at;
+    };
+    low[static_cast<int>(axis)] = ranked(cut);
+    high[static_cast<int>(axis)] = ranked(values.size() - 1 - cut);
   }
   std::vector<Vector3d> corners;
   for (int k = 0; k < 8; ++k)

@@ -165,7 +165,7 @@ TEST_F(RegistrationShardsTest, DamagedPartsAreRefusedWhereverTheyAreCut) {
     EXPECT_FALSE(readRegistrationPart(folder_ / "cut")) << at;
   }
   std::string newer = bytes;
-  newer.replace(newer.find("part 1"), 6, "part 2");
+  newer.replace(newer.find("part 2"), 6, "part 3");
   put(newer);
   refused({files_[0], folder_ / "cut"}, "another version", folder_ / "cut");
   put("anything");

@@ -160,6 +160,7 @@ TEST_F(RelaxIncrementTest, AScanThatFitsNothingStaysWhereItsOdometryPutsIt) {
   empty.columns = far.image->columns();
   empty.range_m.assign(empty.cells(), 0.0F);
   empty.code.assign(empty.cells(), cell_code::kLmsNoSignal);
+  empty.line_tilt_rad.assign(static_cast<std::size_t>(empty.rows), 0.0);
   far.image = RangeImage::make(std::move(empty)).value();
   const std::vector<Pose> before = poses();
   ASSERT_TRUE(project_->apply(importEdit({far})));
