@@ -26,6 +26,7 @@ struct Survey {
   Ended registered, relaxed, one_more;
   double first_mm = 0.0, first_deg = 0.0, last_mm = 0.0, last_deg = 0.0;
   double all_s() const { return 1e-3 * (registered.timing.wall_ms + relaxed.timing.wall_ms); }
+  double all_cpu_ms() const { return registered.timing.cpu_ms + relaxed.timing.cpu_ms; }
 };
 
 void addStops(const fs::path& path, bool create, std::span<SimulatedStop> stops) {
@@ -87,31 +88,32 @@ bool require(Table& table, bool kept, const std::string& what) {
 
 bool addSurveyRows(Table& table, const fs::path& program, const fs::path& scratch,
                    const std::function<void(const std::string&)>& tell) {
-  double stop_of_100_s = 0.0;
+  double stop_of_100_ms = 0.0;
   bool kept = true;
   for (const int count : {100, 300, 1000}) {
     const std::string stops = std::to_string(count) + " stops";
     tell("a survey of " + stops);
     const Survey survey = measured(count, program, scratch);
-    const double stop_s = survey.all_s() / count;
-    if (count == 100) stop_of_100_s = stop_s;
+    // By CPU time, which other programs on the machine disturb least.
+    const double stop_ms = survey.all_cpu_ms() / count;
+    if (count == 100) stop_of_100_ms = stop_ms;
     const std::string subject = "survey seed 1, " + stops + ", all cores; errors are RMSE over the stops";
     table.rows.push_back(rowOf(subject, "tiltmap register", survey.registered));
     Row relaxed = rowOf(subject, "tiltmap relax", survey.relaxed);
     relaxed.median_mm = survey.first_mm, relaxed.median_deg = survey.first_deg;
-    relaxed.remark = fixedReal(survey.all_s(), 1) + " s with registering, " + fixedReal(1e3 * stop_s, 1) +
-                     " ms a stop, " + fixedReal(stop_s / stop_of_100_s, 2) + " of that at 100 stops; " +
+    relaxed.remark = fixedReal(survey.all_s(), 1) + " s with registering; CPU " + fixedReal(stop_ms, 1) +
+                     " ms a stop, " + fixedReal(stop_ms / stop_of_100_ms, 2) + " of that at 100 stops; " +
                      relaxed.remark;
     table.rows.push_back(relaxed);
     Row more = rowOf(subject, "one stop more, tiltmap relax", survey.one_more);
     more.median_mm = survey.last_mm, more.median_deg = survey.last_deg;
-    const double of_all = survey.one_more.timing.wall_ms / survey.relaxed.timing.wall_ms;
+    const double of_all = survey.one_more.timing.cpu_ms / survey.relaxed.timing.cpu_ms;
     more.remark = fixedReal(100.0 * of_all, 1) + " % of relaxing all; " + more.remark;
     table.rows.push_back(more);
     if (count < 1000) continue;
     kept = require(table, survey.all_s() <= kMost_s, stops + " took more than 20 s") && kept;
     kept = require(table, survey.relaxed.peak_mb <= kMost_mb, stops + " took more than 2 GB") && kept;
-    kept = require(table, stop_s <= kMostRatio * stop_of_100_s,
+    kept = require(table, stop_ms <= kMostRatio * stop_of_100_ms,
                    "a stop of 1000 took more than 1.5 times one of 100") &&
            kept;
     kept = require(table, of_all <= kMostOneMore, "one stop more took over a tenth of all") && kept;
