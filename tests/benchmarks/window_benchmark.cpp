@@ -54,6 +54,13 @@ double nowMs() {
   return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
 }
 
+// Of this thread alone: what it did itself, however long it waited for the machine.
+double threadMs() {
+  std::timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
+}
+
 // Of all threads of this process: what a frame costs, however busy the machine is.
 double cpuMs() {
   std::timespec time{};
@@ -239,13 +246,15 @@ Json latencyWhileSilent(ui::CaptureModel& model, const auto& until) {
   constexpr double kEveryMs = 5.0, kLongMs = 8000.0;
   Json result;
   std::vector<double> late;
-  double last = nowMs();
+  double last = nowMs(), worked = threadMs(), most_work = 0.0;
   QTimer timer;
   timer.setTimerType(Qt::PreciseTimer);
   QObject::connect(&timer, &QTimer::timeout, [&] {
     const double now = nowMs();
     late.push_back(std::max(0.0, now - last - kEveryMs));
     last = now;
+    most_work = std::max(most_work, threadMs() - worked);
+    worked = threadMs();
   });
   model.order("silent");
   timer.start(static_cast<int>(kEveryMs));
@@ -263,6 +272,7 @@ Json latencyWhileSilent(ui::CaptureModel& model, const auto& until) {
   result["looks"] = late.size();
   result["median_ms"] = late[late.size() / 2];
   result["worst_ms"] = late.back();
+  result["most_work_ms"] = most_work;
   return result;
 }
 

@@ -61,6 +61,7 @@ bool addVerdictRow(Table& table, const std::string& command) {
   if (!silent.contains("worst_ms")) return *row.wall_ms <= kLimitMs;
   Row late{.subject = "the window while an instrument is silent", .program = "longest wait of an event"};
   late.wall_ms = silent.at("worst_ms").get<double>();
+  late.cpu_ms = silent.at("most_work_ms").get<double>();
   late.remark = formatted("median %.1f ms of %d looks; %s", silent.at("median_ms").get<double>(),
                           silent.at("looks").get<int>(),
                           silent.at("noticed").get<bool>() ? "looked for meanwhile" : "never missed");

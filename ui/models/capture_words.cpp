@@ -134,12 +134,12 @@ QString CaptureModel::diskText() const {
   const int columns = now_.sweep.number > 0 ? now_.sweep.geometry.columns : 361;
   const auto sweeps = static_cast<long long>(disk_free_bytes_ / storedBytes(lines, columns));
   // Short enough for large letters: more than a survey's worth need not be counted.
-  constexpr long long kPlenty = 9999;
+  constexpr long long kPlenty = 999;
   constexpr double kGigabyte = 1e9;
   const QString room = disk_free_bytes_ >= 10.0 * kGigabyte
                            ? groupedNumber(static_cast<long long>(disk_free_bytes_ / kGigabyte)) + " GB"
                            : sizeText(static_cast<unsigned long long>(disk_free_bytes_));
-  return room + ", " + (sweeps > kPlenty ? "over " : "") + groupedNumber(std::min(sweeps, kPlenty)) +
+  return room + ", " + (sweeps > kPlenty ? ">" : "") + groupedNumber(std::min(sweeps, kPlenty)) +
          (sweeps == 1 ? " sweep" : " sweeps");
 }
 QString CaptureModel::tiltText() const {

@@ -69,7 +69,7 @@ CaptureConnectPage::CaptureConnectPage(CaptureModel& model, const PanelContext& 
   faults_ = buildFaults();
   instruments_->setTextFormat(Qt::RichText);
   auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(8, 8, 8, 8);
+  column->setContentsMargins(4, 8, 4, 8);  // room for large letters beside a scroll bar
   column->setSpacing(8);
   column->addWidget(source_);
   column->addWidget(pages_);
@@ -158,6 +158,9 @@ QWidget* CaptureConnectPage::buildEmulator() {
   speed_->setDecimals(1);
   speed_->setValue(1.0);
   speed_->setSuffix(" ×");
+  // Narrower than their largest numbers ask for, where letters are large.
+  seed_->setMinimumWidth(70);
+  speed_->setMinimumWidth(80);
   form->addRow("&Drive", drive_);
   auto* row = new QHBoxLayout;
   row->setSpacing(8);

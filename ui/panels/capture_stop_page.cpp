@@ -28,7 +28,7 @@ CaptureStopPage::CaptureStopPage(CaptureModel& model, const PanelContext& contex
   form->leaveOut(others);
   if (form->layout()) form->layout()->setContentsMargins(0, 0, 0, 0);
   auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(8, 8, 8, 8);
+  column->setContentsMargins(4, 8, 4, 8);  // room for large letters beside a scroll bar
   column->setSpacing(8);
   column->addWidget(own_);
   column->addWidget(odometry_);
