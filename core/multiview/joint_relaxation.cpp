@@ -22,6 +22,7 @@
 
 #include "core/base/parallel.h"
 #include "core/multiview/joint_links.h"
+#include "core/multiview/joint_report.h"
 #include "core/multiview/misfit_pairs.h"
 #include "core/multiview/overlap_candidates.h"
 #include "core/multiview/pose_system.h"
@@ -226,20 +227,6 @@ class JointRelaxation : public RelaxationEngine {
     widest_m_ = loss_.scale_m;
   }
 
-  static void reportAttempts(const std::vector<const JointLink*>& of,
-                             const std::vector<MisfitAttempt>& attempts, RelaxationStep& report) {
-    for (std::size_t k = 0; k < of.size(); ++k) {
-      RelaxationEvent event;
-      event.kind = RelaxationEventKind::Aligned;
-      event.scan = of[k]->moving;
-      event.other = of[k]->fixed;
-      event.pairs = attempts[k].pairs;
-      event.rms_m = attempts[k].rms_m;
-      event.text = stopReasonName(attempts[k].reason);
-      report.events.push_back(event);
-    }
-  }
-
   void findCandidates(RelaxationStep& report) {
     candidates_ = overlapCandidates(input_.scans, poses_, settings_, threads_);
     std::erase_if(candidates_, [this](const auto& pair) { return isExcluded(pair.first, pair.second); });
@@ -379,56 +366,11 @@ class JointRelaxation : public RelaxationEngine {
     if (!unlinked().empty())
       warnings_.push_back("no link ties these scans to scan 0 or a pinned one, so they keep their poses: " +
                           namesOf(unlinked()));
-    reportMovement(report);
-    reportDropped(report);
+    reportMovement(startPoses(), poses_, pinned_, settings_.registration, report, warnings_);
+    const auto excluded = [this](int fixed, int moving) { return isExcluded(fixed, moving); };
+    reportDropped(count(), links_, excluded, report, warnings_);
     finish(report);
   }
-
-  void reportMovement(RelaxationStep& report) {
-    const RegistrationSettings& r = settings_.registration;
-    std::vector<int> far;
-    for (int i = 0; i < count(); ++i) {
-      if (isPinned(i)) continue;
-      const auto index = static_cast<std::size_t>(i);
-      const PoseDifference by = difference(startPoses()[index], poses_[index]);
-      RelaxationEvent moved;
-      moved.kind = RelaxationEventKind::MovedBy;
-      moved.scan = i;
-      moved.translation_m = by.translation_m;
-      moved.rotation_rad = by.rotation_rad;
-      report.events.push_back(moved);
-      if (by.translation_m > r.max_correction_m || by.rotation_rad > r.max_correction_rad) far.push_back(i);
-    }
-    if (!far.empty())
-      warnings_.push_back(
-          "these scans moved further than max-correction allows for a good start; look at them: " +
-          namesOf(far));
-  }
-
-  // Neighbours in time should fit: where they do not, a start is wrong or they saw too little in common.
-  void reportDropped(RelaxationStep& report) {
-    for (int i = 1; i < count(); ++i) {
-      const auto found = std::ranges::find_if(
-          links_, [i](const JointLink& link) { return link.fixed == i - 1 && link.moving == i; });
-      if (found != links_.end() && found->used) continue;
-      if (isExcluded(i - 1, i)) continue;
-      RelaxationEvent dropped;
-      dropped.kind = RelaxationEventKind::LinkDropped;
-      dropped.scan = i - 1;
-      dropped.other = i;
-      if (found == links_.end()) {
-        dropped.text = "they share too little space";
-      } else {
-        dropped.pairs = found->pairs;
-        dropped.rms_m = found->rms_m;
-        dropped.text = "overlap " + percent(found->overlap) + ", agreement " + percent(found->agreement);
-      }
-      report.events.push_back(dropped);
-      warnings_.push_back("scans " + std::to_string(i - 1) + " and " + std::to_string(i) + " do not fit (" +
-                          dropped.text + "): nothing was computed from this pair; check its start");
-    }
-  }
-  static std::string percent(double share) { return std::to_string(std::lround(100.0 * share)) + " %"; }
 
   bool closing_ = true;
   int rounds_ = 0;

@@ -8,9 +8,9 @@
 
 namespace tiltmap {
 
-// Automatic links between scans that are no neighbours in time (closures of loops, registered by name, or put
-// in otherwise) may be false: two places look alike. Each is held against the way round by the others
-// (pose_graph.h).
+// Links between scans that are no neighbours in time (closures of loops, registered by name, set by hand, or
+// put in otherwise) may be false: two places look alike, to people too. Each is held against the way round by
+// the others (pose_graph.h).
 struct ConsistentLinks {
   std::vector<Link> links;            // without the ones that contradict the rest
   std::vector<Pose> world_from_scan;  // as the links that are left put the scans
@@ -18,8 +18,9 @@ struct ConsistentLinks {
 };
 
 // As they are, bit for bit, where no link can be doubted. `pins`: indices of scans that do not move, beside
-// scan 0. Links by hand are a person's word and beyond doubt; so are neighbours in time, and links of an
-// earlier relaxation are not looked at. Error: the equations could not be solved.
+// scan 0. Neighbours in time are beyond doubt, and links of an earlier relaxation are not looked at. A link
+// by hand without an information is as certain as informationByHand() says. Error: the equations could not be
+// solved.
 Result<ConsistentLinks> consistentLinks(const ProjectSnapshot& snapshot, std::vector<Link> links,
                                         std::vector<Pose> world_from_scan, const std::vector<int>& pins);
 

@@ -68,13 +68,34 @@ TEST_F(LinkConsistencyTest, ARightClosurePullsTheStarts) {
   EXPECT_LT(changed(found.world_from_scan), 0.01);
 }
 
-TEST_F(LinkConsistencyTest, APersonsLinkIsBeyondDoubt) {
-  links_.push_back(link(0, 5, Pose::planar(1.0, 0.0, 0.0)));
+TEST_F(LinkConsistencyTest, AFalseClosureSetByHandIsLeftOutAndNamedAsSuch) {
+  links_.push_back(link(0, 5, Pose::planar(3.0, 0.0, 0.0)));
   links_.back().origin = LinkOrigin::ByHand;
+  links_.back().information.reset();
+  const ConsistentLinks found = checked();
+  ASSERT_EQ(found.warnings.size(), 1U);
+  EXPECT_NE(found.warnings[0].find("link by hand of scans 0 and 5 contradicts the others by 3"),
+            std::string::npos)
+      << found.warnings[0];
+  EXPECT_EQ(found.links.size(), links_.size() - 1);
+  EXPECT_LT(changed(found.world_from_scan), 1e-6);
+}
+
+TEST_F(LinkConsistencyTest, ARightClosureSetByHandStays) {
+  links_.push_back(link(0, 5, Pose::planar(0.02, 0.0, 0.0)));
+  links_.back().origin = LinkOrigin::ByHand;
+  links_.back().information.reset();
   const ConsistentLinks found = checked();
   EXPECT_TRUE(found.warnings.empty());
   EXPECT_EQ(found.links.size(), links_.size());
-  EXPECT_EQ(found.world_from_scan, poses_) << "nothing can be doubted, so that the relaxation alone decides";
+}
+
+TEST_F(LinkConsistencyTest, NeighboursSetByHandAreBeyondDoubt) {
+  links_[3] = link(3, 4, Pose::planar(1.0, 0.0, 0.0));
+  links_[3].origin = LinkOrigin::ByHand;
+  const ConsistentLinks found = checked();
+  EXPECT_TRUE(found.warnings.empty());
+  EXPECT_EQ(found.links.size(), links_.size());
 }
 
 TEST_F(LinkConsistencyTest, DisabledFailedAndEarlierFoundLinksSayNothing) {
