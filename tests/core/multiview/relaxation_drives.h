@@ -20,11 +20,12 @@ struct Drive {
   std::vector<PreparedScanPtr> prepared;  // for the default relaxation
 };
 
-inline const Drive& drive(ExperimentId id, std::uint64_t seed) {
+// Each one once, with the number of stops (0: the experiment's own) of the first call.
+inline const Drive& drive(ExperimentId id, std::uint64_t seed, int stops_wished = 0) {
   static std::map<std::pair<ExperimentId, std::uint64_t>, Drive> drives;
   Drive& made = drives[{id, seed}];
   if (!made.scans.empty()) return made;
-  std::vector<SimulatedStop> stops = simulateExperiment(id, seed, 0, 2).value();
+  std::vector<SimulatedStop> stops = simulateExperiment(id, seed, stops_wished, 2).value();
   for (SimulatedStop& stop : stops) {
     made.truth.push_back(stop.truth);
     made.scans.push_back(std::move(stop.scan));
