@@ -70,10 +70,10 @@ json poseJson(const Pose& pose) {
   return {{"t", matrixJson(Eigen::Vector3d(pose.translation()))},
           {"q", matrixJson(Eigen::Vector4d(pose.quaternion().coeffs()))}};
 }
-Pose poseOf(const json& json) {
+Pose poseOf(const json& pose) {
   Eigen::Quaterniond q;
-  q.coeffs() = matrixOf<Eigen::Vector4d>(json.at("q"));
-  return Pose::restored(q, matrixOf<Eigen::Vector3d>(json.at("t")));
+  q.coeffs() = matrixOf<Eigen::Vector4d>(pose.at("q"));
+  return Pose::restored(q, matrixOf<Eigen::Vector3d>(pose.at("t")));
 }
 
 // One list of a structure's numbers, so that writing and reading cannot drift apart.
