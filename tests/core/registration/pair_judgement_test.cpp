@@ -137,7 +137,7 @@ TEST(PairJudgement, TheBareGroundIsFreeToSlide) {
   const PairJudgement j = judgePair(*fixed, *moving, claim);
   EXPECT_NE(j.verdict, Verdict::Good) << j.reason;
   EXPECT_GT(j.strength.weakest_m, 0.1);
-  EXPECT_LT(j.strength.up_m, 0.02);
+  EXPECT_LT(j.strength.up_m, 0.03);  // by the ground within some 13 m: further off the spot is drawn out
   EXPECT_NE(j.strength_sentence.find("slide"), std::string::npos) << j.strength_sentence;
 }
 
