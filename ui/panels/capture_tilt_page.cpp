@@ -31,8 +31,9 @@ CaptureTiltPage::CaptureTiltPage(CaptureModel& model, QWidget* parent)
   target_->setAlignment(Qt::AlignRight);
 
   auto* grid = new QGridLayout(this);
-  grid->setContentsMargins(8, 8, 8, 8);
-  grid->setSpacing(8);
+  grid->setContentsMargins(4, 8, 4, 8);  // four buttons in large letters, beside a scroll bar
+  grid->setVerticalSpacing(8);
+  grid->setHorizontalSpacing(4);
   grid->addWidget(angle_, 0, 0, 1, 4);
   int column = 0;
   for (const double step : {-5.0, -0.8, 0.8, 5.0}) {
