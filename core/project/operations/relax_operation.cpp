@@ -340,7 +340,7 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
     const std::vector<Pose> started_at = input.world_from_scan;
     const double relaxed_at = 1.0 - kJudging * (1.0 - prepared_at);
     auto result = runOne(*snapshot, std::move(input), settings, pins, part(control, prepared_at, relaxed_at));
-    return finished(*snapshot, std::move(computed), std::move(result), scans, started_at, settings.threads,
+    return finished(*snapshot, std::move(computed), std::move(result), scans, started_at, settings,
                     part(control, relaxed_at, 1.0));
   }
 
@@ -381,7 +381,7 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
     if (!result) return fail(result.error());
     if (!*result) return std::optional<Computed>();
     return finished(*snapshot, std::move(computed), std::move(**result), input.scans, input.world_from_scan,
-                    settings.threads, part(control, relaxed_at, 1.0))
+                    settings, part(control, relaxed_at, 1.0))
         .map([](Computed whole) { return std::optional(std::move(whole)); });
   }
 
@@ -395,12 +395,14 @@ class RelaxOperation : public SettingsOperation<RelaxSettings> {
 
   static Result<Computed> finished(const ProjectSnapshot& snapshot, Computed computed,
                                    Result<RelaxationResult> result, const std::vector<PreparedScanPtr>& scans,
-                                   const std::vector<Pose>& started_at, int threads,
+                                   const std::vector<Pose>& started_at, const RelaxSettings& settings,
                                    const JobControl& judging) {
     if (!result) return fail(result.error());
     computed.found = newLinks(snapshot, computed.start.links, *result);
-    if (Status status = judgeFound(snapshot, scans, started_at, threads, judging, computed.found); !status)
-      return fail(status.error());
+    if (settings.judge)
+      if (Status status = judgeFound(snapshot, scans, started_at, settings.threads, judging, computed.found);
+          !status)
+        return fail(status.error());
     computed.warnings.insert(computed.warnings.end(), result->warnings.begin(), result->warnings.end());
     computed.result = std::move(*result);
     return computed;

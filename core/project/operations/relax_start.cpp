@@ -54,7 +54,7 @@ Status registerFirst(const SnapshotPtr& snapshot, const std::string& pairs, cons
 // Everything but where it is said which scans, and how many threads.
 ParameterValues computedFrom(const RelaxSettings& settings) {
   ParameterValues values = relaxParameters().values(settings);
-  for (const char* name : {"pin", "threads", "extent"}) values.erase(name);
+  for (const char* name : {"pin", "threads", "extent", "judge"}) values.erase(name);
   return values;
 }
 
@@ -114,6 +114,11 @@ const ParameterTable<RelaxSettings>& relaxParameters() {
              "new: where only scans have come since the last relaxation (joint, same parameters), those are "
              "put onto the others, which costs a few stops' time; else, and with all, everything anew.",
              "ours");
+    t.boolean(
+        "judge", &RelaxSettings::judge,
+        "Hold the scans of each link that is found against each other, so that its verdict stands beside "
+        "those of registered links; 1 to 2 ms a link. Without, `tiltmap link judge` does it later",
+        "ours");
     t.integer("threads", &RelaxSettings::threads, "", 0, 256,
               "Threads to use, 0 for all cores; the result does not depend on it", "ours");
     t.include(relaxationParameters(), &RelaxSettings::relaxation);

@@ -22,6 +22,7 @@ struct RelaxSettings {
   RelaxationSettings relaxation;
   std::string pin;
   RelaxExtent extent = RelaxExtent::New;
+  bool judge = true;
   int threads = 0;
 };
 const ParameterTable<RelaxSettings>& relaxParameters();
