@@ -9,9 +9,10 @@ namespace tiltmap {
 namespace {
 
 constexpr int kHeadings = 12;
-// Good results nearer to each other are the same place.
-constexpr double kSamePlace_m = 0.1;
-constexpr double kSamePlace_rad = 0.5 * kDegree;
+// Good results nearer to each other are the same place, one of them perhaps not quite reached: what looks alike
+// (corners, bays) lies further apart.
+constexpr double kSamePlace_m = 0.25;
+constexpr double kSamePlace_rad = 3.0 * kDegree;
 // Another place leaves doubt where as large a share of the best one's surfaces is common to both scans there:
 // a corner of a room fits many a corner.
 constexpr double kRival = 0.5;

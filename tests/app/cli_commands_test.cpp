@@ -233,7 +233,7 @@ TEST_F(Cli, RelaxationHasItsKeysAndIsTheLatestStage) {
   const json relaxed = object({"relax", "p.tiltmap", "--threads", "2"});
   std::vector<std::string> keys;
   for (const auto& entry : relaxed.items()) keys.push_back(entry.key());
-  EXPECT_EQ(keys, (std::vector<std::string>{"milliseconds", "moved", "unlinked", "warnings"}));
+  EXPECT_EQ(keys, (std::vector<std::string>{"added", "milliseconds", "moved", "unlinked", "warnings"}));
   EXPECT_GT(relaxed["milliseconds"].get<double>(), 0.0);
   EXPECT_TRUE(relaxed["unlinked"].empty());
   EXPECT_TRUE(relaxed["warnings"].empty());

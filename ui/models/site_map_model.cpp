@@ -84,7 +84,7 @@ SiteMapModel::SiteMapModel(Workspace& workspace, QObject* parent) : QObject(pare
 
 QString SiteMapModel::stageText() const {
   if (!snapshot_) return {};
-  if (workspace_.relaxation().isRunning() && workspace_.display().isProposal()) return "while it is relaxed";
+  if (workspace_.relaxation().isRunning() && workspace_.display().isProposal()) return "relaxing";
   if (workspace_.relaxation().isProposal())
     return workspace_.relaxation().showsBefore() ? "before (proposal)" : "proposal";
   return qt(stageName(workspace_.display().placedStage()));

@@ -62,7 +62,7 @@ class SiteMapModel : public QObject {
 
   const std::vector<MapStop>& stops() const { return stops_; }
   const std::vector<MapLink>& links() const { return links_; }
-  QString stageText() const;  // "relaxed", "proposal", "while it is relaxed"
+  QString stageText() const;  // "relaxed", "proposal", "relaxing"
   // Of the stops and, where wanted, the picture; one metre at least.
   QRectF bounds(bool with_picture = false) const;
   std::optional<ScanId> stopAt(const QPointF& world_m, double within_m) const;
