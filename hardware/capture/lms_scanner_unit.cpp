@@ -105,6 +105,8 @@ Status LmsScannerUnit::receive() {
       return fail(count.error());
     }
     if (*count == 0) return {};
+    // After a pause nobody knows whether what comes was measured now or lay somewhere meanwhile.
+    if (clock_.now() - last_byte_ > mostDelay()) recent_.clear();
     last_byte_ = clock_.now();
     framer_.push(std::span(buffer).first(*count));
   }
@@ -114,15 +116,10 @@ LineTimes LmsScannerUnit::timesOf(std::size_t bytes_here) {
   const Duration scan = durationOf(kTurnS * scanner_.variant().turns());
   const Duration period = durationOf(scanner_.streamPeriod());
   began_ = std::min(began_, last_byte_ - channel_->line().wireTime(bytes_here));
-  // After a pause nobody knows whether a telegram was measured now or lay somewhere meanwhile, and those that
-  // come sooner one after the other than they can have been measured surely did: the rhythm has to be found
-  // anew, and until then no line is believed.
-  if (!recent_.empty()) {
-    const Duration measured = period * static_cast<Duration::rep>(recent_.size());
-    const bool paused = began_ - recent_.back() > period + period / 2;
-    const bool heaped = began_ - recent_.front() < measured - std::max(period / kLateParts, kUsualDelay);
-    if (paused || heaped) recent_.clear();
-  }
+  // Telegrams that come sooner one after the other than they can have been measured lay somewhere meanwhile:
+  // the rhythm has to be found anew, and until then no line is believed.
+  const Duration measured = period * static_cast<Duration::rep>(recent_.size());
+  if (!recent_.empty() && began_ - recent_.front() < measured - mostDelay()) recent_.clear();
   // Telegrams begin in an even rhythm: what earlier ones tell of it holds for this one, whose own first bytes
   // may have been held back by an adapter or by a machine that was busy.
   Instant began = began_;
@@ -131,6 +128,12 @@ LineTimes LmsScannerUnit::timesOf(std::size_t bytes_here) {
     began = std::min(began, earlier + periods * period);
   }
   return {began - scan - durationOf(settings_.latency_s), began};
+}
+
+// What is late by less is put right by the rhythm.
+Duration LmsScannerUnit::mostDelay() const {
+  const Duration period = durationOf(scanner_.streamPeriod());
+  return std::max(period - period / kLateParts, kUsualDelay);
 }
 
 bool LmsScannerUnit::hasRhythm() const {

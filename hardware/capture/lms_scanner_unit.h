@@ -38,6 +38,7 @@ class LmsScannerUnit : public ScannerUnit {
  private:
   Status receive();
   LineTimes timesOf(std::size_t bytes_here);
+  Duration mostDelay() const;
   bool hasRhythm() const;
   Result<std::optional<ScannerEvent>> whole(const lms2xx::Telegram& telegram);
   std::optional<ScannerEvent> beginning();
